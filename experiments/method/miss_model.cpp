@@ -51,9 +51,9 @@ struct Polygon {
     }
     return 0.5 * sum;
   }
-  Range along(double Point2::*axis) const {
+  Range along(const Point2& axis) const {
     Range out;
-    for (const Point2& p : points) out.add(p.*axis);
+    for (const Point2& p : points) out.add(axis.x * p.x + axis.y * p.y);
     return out;
   }
   // Keeps the part where a x + b y + c >= 0.
@@ -94,11 +94,39 @@ Polygon hull(std::vector<Point2> of) {
   return {std::move(out)};
 }
 
+// The sizes of an image along two axes in which it is compact. Axes of whole numbers with the
+// determinant 1 map pixel centres to pixel centres, so the probability to hold one is the same in
+// all of them: a needle along 2:3 is seen as the narrow strip between centres that it is.
+// Lagrange's reduction of the moments of its corners finds them. Once the longer size is below 1 px
+// the area is at most either size, so that sizes no longer matter.
+std::array<double, 2> compact_sizes(const Polygon& image) {
+  Point2 a{1, 0}, b{0, 1};
+  while (true) {
+    Range at_a = image.along(a), at_b = image.along(b);
+    if (at_a.size() > at_b.size()) {
+      std::swap(a, b);
+      std::swap(at_a, at_b);
+    }
+    double aa = 0, ab = 0;
+    for (const Point2& p : image.points) {
+      const double to_a = a.x * p.x + a.y * p.y - 0.5 * (at_a.lo + at_a.hi);
+      aa += to_a * to_a;
+      ab += to_a * (b.x * p.x + b.y * p.y - 0.5 * (at_b.lo + at_b.hi));
+    }
+    const double steps = aa > 0 ? std::round(ab / aa) : 0;
+    const Point2 next{b.x - steps * a.x, b.y - steps * a.y};
+    if (at_b.size() <= 1 || image.along(next).size() >= at_b.size())
+      return {at_a.size(), at_b.size()};
+    b = next;
+  }
+}
+
 // The image of a triangle as it is drawn: fattened by a disc of `radius`.
 struct Image {
   Polygon polygon;  // empty: not drawn, or seen edge-on
   double area = 0;
   Range x, y, depth;
+  std::array<double, 2> compact = {};            // sizes
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
   double slant = 0;    // px of depth that a ball of 1 px adds to the plane
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
@@ -161,8 +189,9 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
   out.polygon = hull(std::move(flat));
   out.area = out.polygon.area();
   if (out.polygon.points.size() < 3 || !(out.area > 0)) return {};
-  out.x = out.polygon.along(&Point2::x);
-  out.y = out.polygon.along(&Point2::y);
+  out.x = out.polygon.along({1, 0});
+  out.y = out.polygon.along({0, 1});
+  out.compact = compact_sizes(out.polygon);
   if (radius == 0 && !box) out.snapped = snapped_share(2 * out.area / longest);
   out.area *= out.snapped;
   return out;
@@ -170,16 +199,17 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
 
 // The part of a triangle that another one hides.
 struct Part {
-  std::uint32_t of, by;
-  double share;  // of the area of the image
+  std::uint32_t of = 0, by = 0;
+  double share = 0;  // of the area of the image in its place
   Range x, y;
+  double place = 0;  // area of the image in the place, at its first part; else 0
   double strip = 0, width = 0, height = 0;  // region where both hide each other: area and sides
 };
 
 struct ViewOfParts {
   std::vector<Image> images;         // per triangle; without polygons
   std::vector<std::uint32_t> first;  // per triangle the index of its first part; then the end
-  std::vector<Part> parts;           // sorted
+  std::vector<Part> parts;           // by triangle and place
   double radius = 0;                 // px, of the ball
 };
 
@@ -194,18 +224,39 @@ void add_part(const Polygon& common, const Image& back, const Image& front, doub
   if (hidden.points.size() < 3) return;
   const double area = hidden.area() * back.snapped * front.snapped;
   if (!(area > 0)) return;
-  Part part{.of = of,
-            .by = by,
-            .share = std::min(area / back.area, 1 - 1e-6),
-            .x = hidden.along(&Point2::x),
-            .y = hidden.along(&Point2::y)};
+  Part part{
+      .of = of, .by = by, .share = area, .x = hidden.along({1, 0}), .y = hidden.along({0, 1})};
   if (thick > 0) {
     hidden.cut(-a, -b, near - c);
     part.strip = hidden.area();
-    part.width = hidden.along(&Point2::x).size();
-    part.height = hidden.along(&Point2::y).size();
+    part.width = hidden.along({1, 0}).size();
+    part.height = hidden.along({0, 1}).size();
   }
   out.push_back(part);
+}
+
+// Groups the parts of one triangle by place: a new place begins at each gap along its longer side.
+void find_places(const Image& image, std::span<Part> parts) {
+  Range Part::*const side = image.x.size() > image.y.size() ? &Part::x : &Part::y;
+  std::ranges::sort(parts, {}, [&](const Part& p) { return std::pair((p.*side).lo, p.by); });
+  for (std::size_t i = 0, end = 0; i < parts.size(); i = end) {
+    Part around;
+    for (end = i; end < parts.size(); ++end) {
+      if (end > i && (parts[end].*side).lo > (around.*side).hi) break;
+      around.x.add(parts[end].x);
+      around.y.add(parts[end].y);
+    }
+    Polygon place = image.polygon;
+    place.cut(1, 0, -around.x.lo);
+    place.cut(-1, 0, around.x.hi);
+    place.cut(0, 1, -around.y.lo);
+    place.cut(0, -1, around.y.hi);
+    double most = 0;  // of a part
+    for (std::size_t k = i; k < end; ++k) most = std::max(most, parts[k].share);
+    parts[i].place = std::max(place.area() * image.snapped, most);
+    for (std::size_t k = i; k < end; ++k)
+      parts[k].share = std::min(parts[k].share / parts[i].place, 1 - 1e-6);
+  }
 }
 
 // All parts in a view. False: too many.
@@ -244,12 +295,14 @@ bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, 
       if (out.parts.size() > kMostParts) return false;
     }
   }
-  std::ranges::sort(out.parts, [](const Part& p, const Part& q) {
-    return p.of != q.of ? p.of < q.of : p.by < q.by;
-  });
+  std::ranges::sort(out.parts, {}, &Part::of);
   out.first.assign(scene.triangles.size() + 1, 0);
   for (const Part& part : out.parts) ++out.first[part.of + 1];
-  for (std::size_t t = 0; t < scene.triangles.size(); ++t) out.first[t + 1] += out.first[t];
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    out.first[t + 1] += out.first[t];
+    find_places(out.images[t],
+                std::span(out.parts).subspan(out.first[t], out.first[t + 1] - out.first[t]));
+  }
   for (Image& image : out.images) image.polygon = {};
   return true;
 }
@@ -359,19 +412,31 @@ class Equations {
   // The probability that a view does not clear a triangle. surely: a triangle known to be stored.
   double seen(std::size_t v, std::uint32_t t, int side, std::uint32_t surely = UINT32_MAX) const {
     const ViewOfParts& view = views_[v];
-    double open = 0;  // the logarithm of the share that nothing hides
+    double none = 1;  // probability that no place holds a centre
+    double open = 0;  // the logarithm of the share of the place that nothing hides
+    double place = 0;
     Range x, y;
     for (std::uint32_t i = view.first[t]; i < view.first[t + 1]; ++i) {
       const Part& part = view.parts[i];
+      if (part.place > 0) {
+        place = part.place;
+        x = y = {};
+        open = 0;
+      }
       const double p = part.by == surely ? 1 : stored(part, side);
       open += std::log1p(-p * part.share);
-      if (p < 0.05) continue;  // rarely stored: p reduces its area, but would not reduce its extent
-      x.add(part.x);
-      y.add(part.y);
+      if (p >= 0.05) {  // rarely stored: p reduces its area, but would not reduce its extent
+        x.add(part.x);
+        y.add(part.y);
+      }
+      if (i + 1 < view.first[t + 1] && !(view.parts[i + 1].place > 0)) continue;
+      if (!(open < 0)) continue;
+      const double hidden = -place * std::expm1(open);
+      none *= 1 - centre_probability(hidden, x.size(), y.size(), view.radius, sharpness_);
     }
-    if (!(open < 0)) return 0;
-    return centre_probability(-view.images[t].area * std::expm1(open), x.size(), y.size(),
-                              view.radius, sharpness_);
+    const Image& image = view.images[t];
+    return std::min(1 - none, centre_probability(image.area, image.compact[0], image.compact[1],
+                                                 view.radius, sharpness_));
   }
 
   // The probability that one pixel centre keeps both, as fattened triangles can hide each other.
@@ -379,9 +444,9 @@ class Equations {
     const ViewOfParts& view = views_[v];
     if (!(view.radius > 0)) return 0;
     const auto end = view.parts.begin() + view.first[a + 1];
-    const auto part = std::lower_bound(view.parts.begin() + view.first[a], end, b,
-                                       [](const Part& p, std::uint32_t by) { return p.by < by; });
-    if (part == end || part->by != b || !(part->strip > 0)) return 0;
+    const auto part = std::find_if(view.parts.begin() + view.first[a], end,
+                                   [&](const Part& p) { return p.by == b; });
+    if (part == end || !(part->strip > 0)) return 0;
     return centre_probability(part->strip, part->width, part->height, view.radius, sharpness_);
   }
 
