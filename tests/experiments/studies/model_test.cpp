@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "experiments/method/miss_model.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
+#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -110,6 +112,54 @@ TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
   }
   EXPECT_GE(judged, 10);
   EXPECT_GE(twins, 3);
+}
+
+// Triangular bars at random, each an object of six triangles.
+Scene bars(int count, double width, std::uint64_t seed) {
+  shapes::Random random(seed);
+  Scene out{.name = "bars"};
+  for (int k = 0; k < count; ++k) {
+    const Vec3 along = random.direction(), middle = random.in_cube(0.5);
+    const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      const double angle =
+          2 * std::numbers::pi * (i % 3) / 3 + k;  // turned: no face is seen edge-on
+      out.vertices.emplace_back(middle + (i < 3 ? -0.5 : 0.5) * along +
+                                width / 2 * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    out.objects.push_back({std::to_string(k), static_cast<std::uint32_t>(out.triangles.size()), 6});
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = first + i, b = first + (i + 1) % 3;
+      out.triangles.push_back({a, b, a + 3});
+      out.triangles.push_back({b, b + 3, a + 3});
+    }
+  }
+  out.source_face.assign(out.triangles.size(), 0);
+  return out;
+}
+
+// The hidden parts along a bar are small and far apart. Taken as one region, they would hold a
+// centre twice as surely as they do.
+TEST(MissModel, PartsFarApartOnABarHoldCentresEachByItself) {
+  MeasurementContext lab("native");
+  double expected = 0, missed = 0, twin = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Scene scene = bars(100, 0.012, seed);
+    RunOptions options{.method = Method::cullide, .resolution = 512};
+    const Record record = run(scene, options, lab.session(), {});
+    const std::vector<TrianglePair> truth = all_colliding_pairs(scene, {}, {}).pairs;
+    missed += static_cast<double>(lacking(truth, record.collisions.all()));
+    const auto forecast = [&] {
+      return misses_of(scene, plan(scene, options)).predicted.value_or(MissPrediction{}).missed;
+    };
+    expected += forecast();
+    options.resolution = 1024;
+    twin += forecast();
+  }
+  EXPECT_GT(missed, 200);
+  EXPECT_LT(factor_between(expected, missed), 1.25) << expected << " " << missed;
+  EXPECT_GT(factor_between(twin, missed), 1.5);
 }
 
 TEST(MissModel, SaysWhereItHasNoPrediction) {
