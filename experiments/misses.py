@@ -9,26 +9,23 @@ import random
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 
 def plus(a, b, factor=1):
     return [p + factor * q for p, q in zip(a, b)]
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
 def unit(a):
     return [p / math.hypot(*a) for p in a]
 
 
-def point():
-    return [random.random() for _ in range(3)]
-
-
 def direction():
     return unit([random.gauss(0, 1) for _ in range(3)])
+
+
+def cross(a, b):
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 
 
 def bar(start, end, width, sides, pieces=1, faces=None):
@@ -47,27 +44,23 @@ def bar(start, end, width, sides, pieces=1, faces=None):
     return rings, corners + ([] if faces else caps)
 
 
-def joined(parts):
-    points, triangles = [], []
-    for more, corners in parts:
-        triangles += [[at + len(points) for at in corner] for corner in corners]
-        points += more
-    return points, triangles
-
-
 def crossed(count, families, width, **shape):
     """Families of count x count parallel bars, each family an object."""
-    def family(axis):
+    objects = [([], []) for _ in range(families)]
+    for axis, (points, triangles) in enumerate(objects):
         for k in range(count * count):
             start = [(at + 0.5) / count + width * random.uniform(-0.5, 0.5) for at in (k % count, k // count)]
             start.insert(axis, 0)
-            yield bar(start, plus(start, [axis == i for i in range(3)]), width, **shape)
-    return [joined(family(axis)) for axis in range(families)]
+            more, corners = bar(start, plus(start, [axis == i for i in range(3)]), width, **shape)
+            triangles += [[at + len(points) for at in corner] for corner in corners]
+            points += more
+    return objects
 
 
 def scattered(count, length, width, **shape):
     """Bars at random in a unit cube, each an object."""
-    ends = [(plus(at, way, -length / 2), plus(at, way, length / 2)) for at, way in ((point(), direction()) for _ in range(count))]
+    places = (([random.random() for _ in range(3)], direction()) for _ in range(count))
+    ends = [(plus(at, way, -length / 2), plus(at, way, length / 2)) for at, way in places]
     return [bar(*both, width, **shape) for both in ends]
 
 
@@ -81,8 +74,8 @@ def terrain(cells, height):
                     for t in [(a, a + row, a + 1), (a + 1, a + row, a + row + 1)]]
 
 
-def triangles(count, size):
-    corners = [plus(at, direction(), size) for at in (point() for _ in range(count)) for _ in range(3)]
+def confetti(count, size):
+    corners = [plus(at, direction(), size) for at in ([random.random() for _ in range(3)] for _ in range(count)) for _ in range(3)]
     return corners, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(count)]
 
 
@@ -99,7 +92,7 @@ FAMILIES = {
     'bars and a terrain: 9 x 9 square bars, 0.01 wide; 40 x 40 cells':
         lambda: crossed(9, 1, 0.01, sides=4) + [terrain(40, 0.05)],
     'two terrains: 50 x 50 cells': lambda: [terrain(50, 0.03), terrain(50, 0.03)],
-    'confetti: two objects of 700 triangles, radius 0.05': lambda: [triangles(700, 0.05), triangles(700, 0.05)],
+    'confetti: two objects of 700 triangles, radius 0.05': lambda: [confetti(700, 0.05), confetti(700, 0.05)],
 }
 
 
@@ -112,17 +105,14 @@ def rows(program):
                 scene = []
                 for k, (points, corners) in enumerate(make()):
                     scene.append({'mesh': f'{k}.off', 'rotate': turn})
-                    with open(f'{folder}/{k}.off', 'w', encoding='utf-8') as file:
-                        file.write(f'OFF\n{len(points)} {len(corners)} 0\n' + ''.join(f'{x!r} {y!r} {z!r}\n' for x, y, z in points) +
-                                   ''.join(f'3 {a} {b} {c}\n' for a, b, c in corners))
-                with open(f'{folder}/scene.json', 'w', encoding='utf-8') as file:
-                    json.dump({'name': 'family', 'objects': scene}, file)
+                    text = ''.join(f'{x!r} {y!r} {z!r}\n' for x, y, z in points) + ''.join(f'3 {a} {b} {c}\n' for a, b, c in corners)
+                    Path(folder, f'{k}.off').write_text(f'OFF\n{len(points)} {len(corners)} 0\n{text}', 'utf-8')
+                Path(folder, 'scene.json').write_text(json.dumps({'name': 'family', 'objects': scene}), 'utf-8')
                 for resolution in 128, 512:
                     def record(command, *more):
                         words = [program, command, f'{folder}/scene.json', '--method', 'cullide', '--resolution', str(resolution)]
                         subprocess.run([*words, '--json', f'{folder}/out', *more], stdout=subprocess.DEVNULL, check=True)
-                        with open(f'{folder}/out', encoding='utf-8') as file:
-                            return json.load(file)
+                        return json.loads(Path(folder, 'out').read_text('utf-8'))
                     of = record('plan')['misses']
                     missed = record('run', '--device', 'native')['verification']['false_negatives']
                     low, high = math.floor(of['low']), math.ceil(of['high'])
@@ -130,14 +120,13 @@ def rows(program):
                            'yes' if low <= missed <= high else 'no']
 
 
-os.chdir(os.path.dirname(os.path.realpath(__file__)) + '/..')
 HEAD = ['family', 'seed', 'resolution', 'colliding', 'predicted', 'low', 'high', 'missed', 'inside']
+results = Path(__file__).resolve().parents[1] / 'docs/results'
 table = list(rows(os.path.abspath(sys.argv[1])))
-with open('docs/results/misses.csv', 'w', encoding='utf-8', newline='') as csv_file:
+with open(results / 'misses.csv', 'w', encoding='utf-8', newline='') as csv_file:
     csv.writer(csv_file, lineterminator='\n').writerows([HEAD, *table])
-with open('docs/results/misses.md', encoding='utf-8') as page:
-    text = page.read().split('\n## Table')[0]
 lines = ['| ' + ' | '.join(f'{cell:,}' if isinstance(cell, int) else cell for cell in row) + ' |' for row in table]
-with open('docs/results/misses.md', 'w', encoding='utf-8') as page:
-    page.write(text + f'\n## Table\n{sum(row[-1] == "yes" for row in table)} of {len(table)} runs are inside.\n\n| ' +
-               ' | '.join(HEAD) + ' |\n|' + '---|' * len(HEAD) + '\n' + '\n'.join(lines) + '\n')
+page = results / 'misses.md'
+page.write_text('\n'.join([page.read_text('utf-8').split('\n## Table')[0], '## Table',
+                           f'{sum(row[-1] == "yes" for row in table)} of {len(table)} runs are inside.', '',
+                           '| ' + ' | '.join(HEAD) + ' |', '|---' * len(HEAD) + '|', *lines, '']), 'utf-8')

@@ -130,6 +130,7 @@ struct Image {
   double area = 0;
   Range x, y, depth;
   std::array<double, 2> compact = {};            // sizes
+  double drawn = 0;                              // probability that it holds a centre
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
   double slant = 0;    // px of depth that a ball of 1 px adds to the plane
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
@@ -330,6 +331,11 @@ class Equations {
         sharpness_(sharpness) {
     const std::size_t n = scene.triangles.size();
     for (auto& keep : now_) keep.assign(n, 1);
+    for (ViewOfParts& view : views_) {
+      for (Image& image : view.images)
+        image.drawn = centre_probability(image.area, image.compact[0], image.compact[1],
+                                         view.radius, sharpness_);
+    }
   }
 
   void solve() {
@@ -437,9 +443,7 @@ class Equations {
       const double hidden = -place * std::expm1(open);
       none *= 1 - centre_probability(hidden, x.size(), y.size(), view.radius, sharpness_);
     }
-    const Image& image = view.images[t];
-    return std::min(1 - none, centre_probability(image.area, image.compact[0], image.compact[1],
-                                                 view.radius, sharpness_));
+    return std::min(1 - none, view.images[t].drawn);
   }
 
   // The probability that one pixel centre keeps both, as fattened triangles can hide each other.
