@@ -54,9 +54,8 @@ constexpr const char* kExamples =
     "closed parts no longer overlap; the true one lies between. curve: length of the curve in\n"
     "which the surfaces cross. docs/clash.md has the columns and the proofs.\n"
     "A comma, colon or * that is part of a name is written with \\ before it, as in 'a\\,b:c'.\n\n"
-    "Exit status 0: none of the words of --fail-on, in no frame. 1: one of them; also if a pair "
-    "was\n"
-    "not examined, since a part has no triangles. 2: the input or an option is wrong.";
+    "Exit status 0: none of the words of --fail-on, in no frame. 1: one of them; also if a\n"
+    "pair was not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // of a file of --compare
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()

@@ -22,6 +22,29 @@ bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
   });
 }
 
+// The Error for the first of these numbered files that the frame lacks.
+std::optional<Error> missing_file(const std::vector<std::string>& paths, const FrameRange& range,
+                                  long frame) {
+  for (const std::string& path : paths) {
+    const auto exists = [&](long number) {
+      std::error_code error;
+      return std::filesystem::exists(numbered(path, number), error);
+    };
+    if (!is_numbered(path) || exists(frame)) continue;
+    constexpr long kTried = 1000;  // numbers mostly begin at 0 or 1
+    long first = exists(range.first) ? range.first : 0;
+    while (first < kTried && !exists(first)) ++first;
+    long last = first;
+    while (last - first + 1 < range.count() && exists(last + 1)) ++last;
+    return Error(numbered(path, frame), "the file does not exist",
+                 exists(first) ? fmt::format("give numbers that there are: --frames {}:{} instead "
+                                             "of {}:{}",
+                                             first, last, range.first, range.last)
+                               : "give numbers that there are");
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 FrameRange parse_frames(const std::string& text) {
@@ -57,6 +80,7 @@ FrameSource::FrameSource(SceneArguments arguments, FrameRange range, bool self)
     built_in_.emplace(names[0], range.last + 1, self);
     return;
   }
+  if (const std::optional<Error> error = missing_file(names, range_, range_.first)) throw *error;
   if (!built_in) scene_ = load_scene(arguments_, meshes_);
   const std::vector<std::string> paths = meshes_.numbered_paths();
   if (paths.empty()) {
@@ -94,16 +118,7 @@ const Scene& FrameSource::at(long frame) {
 }
 
 std::optional<Error> FrameSource::missing_at(long frame) const {
-  for (const std::string& path : meshes_.numbered_paths()) {
-    const std::string file = numbered(path, frame);
-    std::error_code error;
-    if (std::filesystem::exists(file, error)) continue;
-    return Error(
-        file, "the file does not exist",
-        fmt::format("give the numbers that there are: --frames FIRST:LAST instead of {}:{}",
-                    range_.first, range_.last));
-  }
-  return std::nullopt;
+  return missing_file(meshes_.numbered_paths(), range_, frame);
 }
 
 std::optional<Error> FrameSource::missing() const {

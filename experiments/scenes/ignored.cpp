@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace farcull {
 
@@ -83,9 +84,12 @@ bool doubtful(const Scene& scene, std::string_view pattern,
 
 constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
 
-std::string some_names(const Scene& scene) {
+/// The end of a remedy: the name that was probably meant, and some of those that there are.
+std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
-  std::string out;
+  std::vector<std::string> known;
+  for (const Object& object : scene.objects) known.push_back(object.name);
+  std::string out = did_you_mean(likely_word(std::string(unknown), known)) + "the scene has ";
   for (std::size_t o = 0; o < std::min(kShown, scene.objects.size()); ++o)
     out += (o > 0 ? ", " : "") + scene.objects[o].name;
   return out + (scene.objects.size() > kShown ? ", ..." : "");
@@ -109,12 +113,12 @@ constexpr const char* kOneObject = "names one object, and a pair has two";
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
+  std::string unknown;
   const auto fail = [&](const std::string& reason) {
     throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
-                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)), names.line);
+                fmt::format("{}; {}", kRemedy, some_names(scene, unknown)), names.line);
   };
   std::vector<std::uint32_t> first, second;
-  std::string unknown;
   int places = 0;
   for (std::size_t colon = find_plain(text, ':'); colon != std::string_view::npos;
        colon = find_plain(text, ':', colon + 1)) {
@@ -156,8 +160,8 @@ std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& fir
     }
     if (!out.empty() || lacking == UnknownName::passed_over) return out;
     throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
-                "give names of objects, in which * stands for any characters; the scene has " +
-                    some_names(scene),
+                "give names of objects, in which * stands for any characters; " +
+                    some_names(scene, pattern),
                 line);
   };
   const std::vector<std::uint32_t> a = objects(first), b = objects(second);

@@ -64,9 +64,14 @@ class Reading {
   long* line_;
 };
 
+// Lines of the keys "mesh" in "objects", and of the pairs in "ignore".
+struct Lines {
+  std::vector<long> meshes, ignored;
+};
+
 // Reads only the syntax of a text. Finds what json::parse does not report: the place of the first
 // error, keys that occur twice (json::parse silently keeps the last one), and the lines of the
-// pairs of ignored objects.
+// meshes and of the pairs of ignored objects.
 class Syntax : public nlohmann::json_sax<json> {
  public:
   // line: the line of the character that was read last.
@@ -79,7 +84,7 @@ class Syntax : public nlohmann::json_sax<json> {
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
   bool start_array(std::size_t) override {
-    if (++arrays_ == 2 && keys_.size() == 1 && last_ == "ignore") ignore_lines.push_back(line_);
+    if (++arrays_ == 2 && keys_.size() == 1 && last_ == "ignore") lines.ignored.push_back(line_);
     return true;
   }
   bool end_array() override {
@@ -97,6 +102,7 @@ class Syntax : public nlohmann::json_sax<json> {
   bool key(string_t& name) override {
     if (!keys_.back().insert(name).second && twice.empty()) twice = name;
     if (keys_.size() == 1) last_ = name;
+    if (keys_.size() == 2 && name == "mesh" && last_ == "objects") lines.meshes.push_back(line_);
     return true;
   }
   bool parse_error(std::size_t position, const std::string&,
@@ -109,7 +115,7 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string twice;   // a key that occurs twice in one object
   std::size_t at = 0;  // bytes read when the error was found, the offending one included
   std::string reason;
-  std::vector<long> ignore_lines;  // line of each pair in the array "ignore" of the file
+  Lines lines;
 
  private:
   const long& line_;
@@ -125,8 +131,8 @@ std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
 
 class SceneFile : SceneValues {
  public:
-  SceneFile(std::string path, std::vector<long> ignore_lines, MeshCache& meshes)
-      : SceneValues(std::move(path)), ignore_lines_(std::move(ignore_lines)), meshes_(meshes) {}
+  SceneFile(std::string path, Lines lines, MeshCache& meshes)
+      : SceneValues(std::move(path)), lines_(std::move(lines)), meshes_(meshes) {}
 
   // `added` is called after each object.
   SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
@@ -140,7 +146,7 @@ class SceneFile : SceneValues {
     require(!objects.empty(), "objects", "is empty", form);
     SceneBuilder builder(clean_name(name) + meshes_.note(), path);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      add_object(objects[i], fmt::format("objects[{}]", i), builder);
+      add_object(objects[i], i, builder);
       if (added) added(builder);
     }
     return builder;
@@ -159,14 +165,15 @@ class SceneFile : SceneValues {
               place, "must be an array of two names", form);
       const std::vector<ObjectPair> named =
           pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path, place,
-                        ignore_lines_.at(k), lacking);
+                        lines_.ignored.at(k), lacking);
       out.insert(out.end(), named.begin(), named.end());
     }
     return in_order(std::move(out));
   }
 
  private:
-  void add_object(const json& object, const std::string& place, SceneBuilder& builder) const {
+  void add_object(const json& object, std::size_t number, SceneBuilder& builder) const {
+    const std::string place = fmt::format("objects[{}]", number);
     require(object.is_object(), place, "must be a JSON object", "write {\"mesh\": FILE}");
     check_keys(object, place,
                {"name", "mesh", "matrix", "scale", "rotate", "translate", "split", "self"});
@@ -189,7 +196,8 @@ class SceneFile : SceneValues {
     } catch (const Error& error) {
       if (error.reason != "the file does not exist") throw;
       throw Error(error.where, error.reason,
-                  fmt::format("{}: {}.mesh of {} names this one", error.remedy, place, path));
+                  fmt::format("{}: {}.mesh in line {} of {} names this one", error.remedy, place,
+                              lines_.meshes.at(number), path));
     }
   }
 
@@ -202,14 +210,13 @@ class SceneFile : SceneValues {
     return Split::kNone;
   }
 
-  std::vector<long> ignore_lines_;
+  Lines lines_;
   MeshCache& meshes_;
 };
 
-// The text as JSON, and the lines of its ignored pairs.
 struct Parsed {
   json root;
-  std::vector<long> ignore_lines;
+  Lines lines;
 };
 
 // Throws Error if the syntax is wrong or if a key occurs twice in one object.
@@ -228,12 +235,12 @@ Parsed parsed(const std::string& text, const std::string& path) {
     throw Error(path, "the key " + quote_token(syntax.twice) + " occurs twice in one object",
                 "delete one of them");
   }
-  return {json::parse(text), syntax.ignore_lines};
+  return {json::parse(text), syntax.lines};
 }
 
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const Parsed file = parsed(text, path);
-  SceneFile reader(path, file.ignore_lines, meshes);
+  SceneFile reader(path, file.lines, meshes);
   const bool later_frame = !meshes.numbered_paths().empty();  // the first frame fills these
   Scene scene = reader.read(file.root).finish();
   if (file.root.contains("ignore")) {
@@ -253,7 +260,7 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
   Scene names;  // the names of all objects of the whole scene
-  SceneFile reader(path, file.ignore_lines, meshes);
+  SceneFile reader(path, file.lines, meshes);
   reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
     if (ignores) {
@@ -339,6 +346,7 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
                     "; farcull clash takes the folder itself");
   }
   if (const std::optional<Error> foreign = foreign_mesh(name)) throw *foreign;
+  require_known(name);
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
               likely_name(name) + "farcull scenes lists the built-in scenes");

@@ -341,10 +341,8 @@ const Mesh& MeshCache::get(const std::string& path) {
   }
   std::error_code error;
   if (!frame_ && is_numbered(path) && !std::filesystem::exists(path, error)) {
-    throw Error(
-        path, "stands for numbered files, and it is not said which",
-        "add --frames FIRST:LAST to farcull run or verify, as in --frames 1:100, or name one "
-        "file");
+    throw Error(path, "stands for numbered files, and it is not said which",
+                "add --frames FIRST:LAST, as in --frames 1:100, or name one file");
   }
   const std::string key = real_path(path);
   auto entry = meshes_.find(key);

@@ -11,8 +11,9 @@ sheet.obj << v 2 2 0; v 3 2 0; v 2 3 0; f 1 2 3
 bad {columns} without pairs | {columns0}: .*--pairs | run {all} {*columns}
 bad kinds '{kinds}' | --kinds: .*give some of apart,[ ] | run {all} --pairs p.csv --kinds {kinds}
 bad limit '{limit}' | --limit: .*1 or more | run {all} --limit {limit}
-bad an unknown name | --ignore: 'floor:wing' names 'wing', and no object is called so; .*floor, fin
+bad an unknown name | --ignore: 'floor:wing' names 'wing', and no object is called so; .* of a name; the scene has floor, fin
   | run {all} --ignore floor:wing
+bad a misspelt name | --only: 'flor:fin' names 'flor', .*; did you mean floor\? the scene has floor, fin | run {all} --only flor:fin
 wrong.txt << floor:fin; ; floor:wing
 bad a wrong line | wrong\.txt:3: 'floor:wing' names 'wing' | run {all} --ignore-file wrong.txt
 bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {all} {*part} --certificate c.json

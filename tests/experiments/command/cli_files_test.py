@@ -69,7 +69,7 @@ rows(r"""
 nested.json << {"objects":; [{"mesh": "face.obj"}]}
 bad scene file with a bad mesh | .*face\.obj:5: | run nested.json {outputs}
 gone.json << {"objects":; [{"mesh": "good.obj"}, {"mesh": "gone.obj"}]}
-bad scene file with a missing mesh | gone\.obj: the file does not exist; .*: objects\[1\]\.mesh of gone\.json names this one$ | run gone.json {outputs}
+bad scene file with a missing mesh | gone\.obj: the file does not exist; .*: objects\[1\]\.mesh in line 2 of gone\.json names this one$ | run gone.json {outputs}
 solid.obj << solid a; facet normal 0 0 1
 bad STL named .obj | solid\.obj: looks like a \.stl file, not OBJ; rename it$ | run solid.obj {outputs}
 $ cat good.obj good.obj > good.stl

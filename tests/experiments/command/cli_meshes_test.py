@@ -44,7 +44,11 @@ bad an option as a name | --weld=1: | run edge.obj -- --weld=1
 0 a hint | run cad.obj --self | ^hint +cad is not closed: [0-9]+ open edges, one of them at .* Their ends nearly$
   | ^ +coincide; --weld 1e-[01][0-9][*]size closes it$
 0 no hint | run cad.obj --self --weld 1e-9 | @err merged | ! ^hint | ^colliding +0 pairs
-bad a name | two-sphere: neither .*; did you mean two-spheres\? | run two-sphere
+bad a name | two-sphere: no built-in scene has this name, and there is no such file; did you mean two-spheres\? | run two-sphere
+bad a name for clash | nonexist: no built-in scene has this name, and there is no such file; .*farcull scenes | clash nonexist
+$ touch plain
+bad a file of no kind | plain: neither .* nor a file that ends in | run plain
+$ rm plain
 # Standard input.
 bad without a format | -: standard input does not say | run - --self
 bad of a format | --format: 'step' is no format | run - --format step --self

@@ -24,9 +24,11 @@ bad a certificate over the list | --certificate: c_1\.json is c_1\.json, where -
 cloth_{i}.obj << {T}; f 1 2 3; f 1 2 4
 2 a frame that is missing | run {cloth} --frames 3:6 --json missing.json --pairs missing.csv | ^ +5[ ]
   | @err ^farcull: .*cloth_06\.obj: the file does not exist; the frames before it are run$
-  | @err ^farcull: .*cloth_06\.obj: the file does not exist; give[ ]
+  | @err ^farcull: .*cloth_06\.obj: the file does not exist; give numbers that there are: --frames 3:5 instead of 3:6$
   | @missing.json ^ +"frame": 5, | @missing.json ^    "frames": 3, | @missing.json ^}$ | @missing.csv ^frame,
-bad frames from another number | cloth_00\.obj: the file does not exist | run {cloth} --frames 3
+bad frames from another number | cloth_00\.obj: the file does not exist; give numbers that there are: --frames 3:5 instead of 0:2$
+  | run {cloth} --frames 3
+bad frames of no file | absent_0\.obj: the file does not exist; give numbers that there are$ | run absent_%d.obj --frames 3
 bad numbered files without frames | cloth_%02d\.obj: .*; add --frames FIRST:LAST | run cloth_%02d.obj
 cloth.json << {"objects": [{"mesh": "cloth_%02d.obj"}]}
 bad numbered files of a scene file | .*cloth_%02d\.obj: .*; add --frames | run cloth.json
@@ -86,6 +88,7 @@ $ mkdir certificates
 0 certificates of frames | run fall.json --method exact --frames 1:3 --no-verify
   --certificate certificates/c_%02d.json --pairs falls.csv
   | $ [[ $(cd certificates && echo *) == 'c_01.json c_02.json c_03.json' ]]
+0 the scene before its certificates | check fall.json certificates/c_%02d.json --frames 1:3 | ^proved: in each of 3 frames
 0 check of frames | check certificates/c_%02d.json fall.json --frames 1:3 --pairs falls.csv
   | ^proved: in each of 3 frames these pairs of the scene meet, and no others: 1 in all$ | ^ +2  proved +[0-9]+ +1 +[0-9.]+$
 bad certificates of frames without frames | CERTIFICATE: .*--frames | check certificates/c_%02d.json fall.json

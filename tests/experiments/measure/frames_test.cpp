@@ -96,6 +96,7 @@ TEST(Frames, MissingFilesAndScenesThatStandStillAreNamed) {
   FrameSource source({path}, {0, 2}, false);
   ASSERT_TRUE(source.missing().has_value());
   EXPECT_EQ(source.missing()->where, folder.path("m_2.obj"));
+  EXPECT_TRUE(has_text(source.missing()->remedy, "--frames 0:1 instead of 0:2"));
   EXPECT_EQ(source.at(1).triangles.size(), 1u);
   EXPECT_EQ(error_of([&] { source.at(2); }).where, folder.path("m_2.obj"));
   EXPECT_FALSE(FrameSource({path}, {0, 1}, false).missing().has_value());

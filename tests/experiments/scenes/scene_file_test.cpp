@@ -278,10 +278,12 @@ TEST_F(SceneFileTest, RefusesToMoveAMeshBeyondDoubles) {
 
 TEST_F(SceneFileTest, NamesTheMeshThatIsBad) {
   const std::string missing = folder.path("none.obj");
-  const Error none = error_of([&] { read(R"({"objects": [{"mesh": "none.obj"}]})"); });
+  const Error none = error_of([&] {
+    read("{\"objects\": [{\"mesh\": \"t.obj\"},\n{\"name\": \"mesh\",\n\"mesh\": \"none.obj\"}]}");
+  });
   EXPECT_EQ(none.where, missing);
   EXPECT_EQ(none.reason, "the file does not exist");
-  EXPECT_TRUE(has_text(none.remedy, "objects[0].mesh of ")) << none.what();
+  EXPECT_TRUE(has_text(none.remedy, "objects[1].mesh in line 3 of ")) << none.what();
   const std::string bad = folder.write("bad.obj", "v 0 0 0\nf 0 1 1\n");
   const Error error = error_of([&] { read(R"({"objects": [{"mesh": "bad.obj"}]})"); });
   EXPECT_EQ(error.where, bad);
