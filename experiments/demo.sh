@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The main job in one command, on a machine with nothing but Debian and a checkout.
-# 1. Installs the packages that are missing, builds the command compare, fetches real meshes meanwhile.
+# 1. Installs the packages that are missing, builds the program (no tests), fetches real meshes meanwhile.
 # 2. Compares FAR, CULLIDE, boxes and the method exact on two bunnies that interpenetrate, and
 #    prints a table. Exact predicates check every pair that a method culled.
-# 3. Builds the whole program (no tests), draws a picture of what CULLIDE misses and FAR finds,
-#    measures the small grids of all studies, and makes the report.
+# 3. Draws a picture of what CULLIDE misses and FAR finds, measures the small grids of all studies,
+#    and makes the report.
 # Exit status: that of the comparison, else that of the first step after it that failed; 2 if the
 # comparison did not start.
 set -euo pipefail
@@ -16,10 +16,7 @@ cd "$farcull_root"
 farcull_setup
 bash experiments/meshes.sh &
 fetching=$!
-# If the whole program is not built yet, the first table does not wait for it.
-program=build/farcull
-if ! farcull_is_built && [[ ! -e $program ]]; then program=build/farcull_compare; fi
-farcull_build "${program##*/}"
+farcull_build farcull
 
 scene=two-bunnies
 status=0
@@ -38,9 +35,9 @@ results=build/demo/compare.json
 rm -f "$results" # so that an old record is not taken for this one
 echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
-"$program" compare "$scene" --json "$results" || status=$?
+build/farcull compare "$scene" --json "$results" || status=$?
 echo "demo: FAR again, with boxes of triangles before drawing; that is not published"
-"$program" compare "$scene" --methods far --resolutions 512 --broad-phase triangles |
+build/farcull compare "$scene" --methods far --resolutions 512 --broad-phase triangles |
   sed -n '/^method/p; /^far/p' || status=$?
 
 if [[ -e $results ]]; then echo "demo: all numbers are in $results"; fi
@@ -57,7 +54,6 @@ step() {
   if ((status == 0)); then status=$failed; fi
 }
 
-farcull_build farcull
 picture=build/demo/compare.png
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)

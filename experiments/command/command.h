@@ -1,6 +1,6 @@
 // The commands of the program. Each add_...() declares its options and returns a Command, whose
 // run() executes it. Commands include this file and not <CLI/CLI.hpp>, which costs seconds of
-// compile time per file: only command.cpp, cli.cpp and compare_main.cpp include that.
+// compile time per file: only command.cpp and cli.cpp include that.
 //
 // Also the options, files, outputs and progress that several commands share.
 #pragma once
