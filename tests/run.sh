@@ -26,6 +26,7 @@ campaigns=(
   "reliability bash experiments/reliability.sh"
   "reliability_boxes bash experiments/reliability.sh boxes"
   "reliability_motion bash experiments/reliability.sh motion"
+  "distances FARCULL_DISTANCES=100000 build/tests/farcull_tests --gtest_filter=Distances.*Random*"
   "reliability_distances bash experiments/reliability.sh distances"
   "oracles bash tests/oracles.sh"
   "odr bash tests/odr.sh"

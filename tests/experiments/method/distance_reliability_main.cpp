@@ -1,13 +1,9 @@
-// Distances of full scenes and of many small ones against the truth in rational numbers: a part of
+// Distances of full scenes against the truth in rational numbers: a part of
 // experiments/reliability.sh distances. Prints a row of a table for each question, and exits with 1
 // if an answer is wrong.
 //   farcull_distance_reliability SCENE DIAGONALS [bit|pair]
-//   farcull_distance_reliability random FIRST COUNT [bit|pair]
-// SCENE: a built-in one; DIAGONALS: by so many the second half of its objects is moved. random:
-// COUNT small scenes, drawn with the seeds FIRST, FIRST + 1, ... bit, pair: spoils the answers,
-// which must be noticed: a distance by one bit, or a nearest pair is dropped.
-#include <unistd.h>
-
+// SCENE: a built-in one; DIAGONALS: by so many the second half of its objects is moved. bit, pair:
+// spoils the answers, which must be noticed: a distance by one bit, or a nearest pair is dropped.
 #include <cinttypes>
 
 #include "core/base/floating_point.h"
@@ -19,7 +15,6 @@
 namespace farcull {
 namespace {
 
-using distance_lab::Answer;
 using distance_lab::Q;
 using distance_truth::Nearest;
 using enum DistancePairs;
@@ -108,47 +103,6 @@ Row run_scene(const Scene& scene, DistancePairs pairs, Spoil spoil) {
   return out;
 }
 
-/// Up to four objects of up to six triangles. By the seed: on a grid, where many pairs are as near
-/// or meet; in a cube; of many magnitudes; on a grid and moved by some units in the last place.
-Scene small_scene(std::uint64_t seed) {
-  rational::Draws random(seed);
-  Scene scene = distance_lab::random_scene(random, 2 + random.below(3), 6);
-  const auto kind = seed % 4;
-  if (kind == 0) return scene;
-  for (Vec3& p : scene.vertices) {
-    if (kind == 1) p = random.cube(1);
-    if (kind == 2) p = random.scaled3(-40, 1);
-    for (int k = 0; k < 3 && kind == 3; ++k)
-      for (int steps = random.below(4); steps > 0; --steps)
-        p[k] = std::nextafter(p[k], random.coin() ? 1e300 : -1e300);
-  }
-  return scene;
-}
-
-void run_small(std::uint64_t seed, Spoil spoil, Row& row) {
-  const Scene scene = small_scene(seed);
-  const distance_lab::Truth truth(scene);
-  for (const DistanceOptions& options : {DistanceOptions{.pairs = objects, .inside = false},
-                                         DistanceOptions{.pairs = nearest, .inside = false}}) {
-    if (!nothing_asked(scene, options).empty()) continue;
-    DistanceRecord record = distances(scene, options);
-    if (spoil == Spoil::bit)
-      record.distances[0].closest.distance = next(record.distances[0].closest.distance);
-    if (spoil == Spoil::pair) record.distances.erase(record.distances.begin());
-    const std::vector<Answer> answers = distance_lab::answers_of(record);
-    const std::vector<Answer> expected = truth.answers(options);
-    row.answers += expected.size();
-    row.nearest += expected.size();
-    for (const Answer& e : expected) {
-      const auto found = std::ranges::lower_bound(answers, e.objects, {}, &Answer::objects);
-      const bool there = found != answers.end() && found->objects == e.objects;
-      row.missed += !there || found->pair != e.pair;
-      row.unequal += !there || found->squared != e.squared;
-    }
-    row.unequal += answers.size() > expected.size() ? answers.size() - expected.size() : 0;
-  }
-}
-
 void print(const std::string& scene, const std::string& moved, const char* question, const Row& row,
            double ms) {
   std::printf("| %s | %s | %s | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64
@@ -182,49 +136,16 @@ bool run_built_in(const std::string& name, const std::string& diagonals, Spoil s
   return holds;
 }
 
-bool run_random(std::uint64_t first, std::uint64_t count, Spoil spoil) {
-  const bool terminal = isatty(2) == 1;
-  const Stopwatch watch;
-  Row row;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    const bool held = row.holds();
-    run_small(first + k, spoil, row);
-    if (held && !row.holds())
-      std::fprintf(stderr, "first wrong with the seed %" PRIu64 "\n", first + k);
-    if (terminal && k % 100 == 99) std::fprintf(stderr, "\r%" PRIu64 " of %" PRIu64, k + 1, count);
-  }
-  if (terminal) std::fprintf(stderr, "\r\033[K");
-  print("random, seeds " + std::to_string(first) + " to " + std::to_string(first + count - 1), "-",
-        "objects, nearest", row, watch.ms());
-  return row.holds();
-}
-
-int usage() {
-  std::fprintf(stderr,
-               "farcull_distance_reliability SCENE DIAGONALS [bit|pair]\n"
-               "farcull_distance_reliability random FIRST COUNT [bit|pair]\n");
-  return 2;
-}
-
 int run(const std::vector<std::string>& words) {
-  const bool random = !words.empty() && words[0] == "random";
-  const std::size_t needed = random ? 3 : 2;
-  if (words.size() < needed || words.size() > needed + 1) return usage();
-  Spoil spoil = Spoil::nothing;
-  if (words.size() > needed) {
-    if (words.back() != "bit" && words.back() != "pair") return usage();
-    spoil = words.back() == "bit" ? Spoil::bit : Spoil::pair;
+  const auto diagonals = words.size() < 2 ? std::nullopt : parse_number<double>(words[1]);
+  const bool spoils = words.size() == 3 && (words[2] == "bit" || words[2] == "pair");
+  if (!diagonals || !(*diagonals >= 0) || words.size() != (spoils ? 3u : 2u)) {
+    std::fprintf(stderr, "farcull_distance_reliability SCENE DIAGONALS [bit|pair]\n");
+    return 2;
   }
   const FloatingPointGuard guard;
-  if (!random) {
-    const auto diagonals = parse_number<double>(words[1]);
-    if (!diagonals || !(*diagonals >= 0)) return usage();
-    return run_built_in(words[0], words[1], spoil) ? 0 : 1;
-  }
-  const auto first = parse_number<std::uint64_t>(words[1]);
-  const auto count = parse_number<std::uint64_t>(words[2]);
-  if (!first || !count || *count == 0) return usage();
-  return run_random(*first, *count, spoil) ? 0 : 1;
+  const Spoil spoil = !spoils ? Spoil::nothing : words[2] == "bit" ? Spoil::bit : Spoil::pair;
+  return run_built_in(words[0], words[1], spoil) ? 0 : 1;
 }
 
 }  // namespace
