@@ -31,48 +31,26 @@ std::vector<std::string> alternatives(const std::string& type) {
   return out;
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::string> out;
-  for (const BuiltinScene& scene : builtin_scenes()) out.push_back(scene.name);
-  return out;
-}
-
 std::string joined(const std::vector<std::string>& words, const char* between = " ") {
   return fmt::format("{}", fmt::join(words, between));
 }
 
-// The possible values of an option or argument.
-struct CompletedValues {
-  std::vector<std::string> words;
-  bool files = false;   // any file
-  bool meshes = false;  // files that a scene is read from
-  bool folders = false;
-};
-
-// By DeclaredOption::type: the words of an enumeration such as "fragment|fixed", the values of a
-// known placeholder (METHOD, SCENE, FILE, ...), nothing for numbers and other types.
-CompletedValues completed_values(const std::string& type) {
-  for (const Option& option : run_options()) {
-    if (type == option.type && !option.words.empty()) return {.words = option.words};
-  }
-  if (type == "AXIS") return {.words = {"x", "y", "z"}};
-  if (type == "SHELL") return {.words = {"bash"}};
-  if (type == "SCENE") return {.words = scene_names(), .meshes = true};
-  if (type == "NAME") return {.words = scene_names()};
-  if (type == "FILE" || type == "CERTIFICATE") return {.words = {}, .files = true};
-  if (type == "DIR") return {.words = {}, .folders = true};
-  if (type == "SHARDS") return {.words = {}, .files = true};
-  return {.words = alternatives(type)};
-}
-
-// Encodes how to complete a value: the words separated by spaces, with "files", "meshes" and
-// "folders" as @files, @meshes, @folders.
+// How to complete a value or argument of this DeclaredOption::type: words with blanks between. They
+// are those of an enumeration such as "fragment|fixed", or for a known placeholder (METHOD, SCENE,
+// FILE, ...) its values; @files stands for any file, @meshes for files that a scene is read from,
+// @folders for folders. Empty for numbers and other types.
 std::string how(const std::string& type) {
-  const CompletedValues values = completed_values(type);
-  std::vector<std::string> words = values.words;
-  if (values.files) words.push_back("@files");
-  if (values.meshes) words.push_back("@meshes");
-  if (values.folders) words.push_back("@folders");
+  for (const Option& option : run_options()) {
+    if (type == option.type && !option.words.empty()) return joined(option.words);
+  }
+  if (type == "AXIS") return "x y z";
+  if (type == "SHELL") return "bash";
+  if (type == "FILE" || type == "CERTIFICATE" || type == "SHARDS") return "@files";
+  if (type == "DIR") return "@folders";
+  if (type != "SCENE" && type != "NAME") return joined(alternatives(type));
+  std::vector<std::string> words;
+  for (const BuiltinScene& scene : builtin_scenes()) words.push_back(scene.name);
+  if (type == "SCENE") words.emplace_back("@meshes");
   return joined(words);
 }
 
@@ -173,7 +151,8 @@ std::string bash_script(const DeclaredCommand& program) {
   return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
          shared_tables(program) + R"sh(
 _farcull() {
-  local current='' candidates='' line=${COMP_LINE:0:COMP_POINT} word prefix=''
+  local current='' candidates='' line=${COMP_LINE:0:COMP_POINT} word prefix='' kind path
+  local mesh='\.([oO][bB][jJ]|[oO][fF][fF]|[pP][lL][yY]|[sS][tT][lL]|json|(obj|off|ply|stl)\.gz)$'
   # Bash divides words at = and : as well, so they are put together again.
   local -a words=()
   read -ra words <<<"$line"
@@ -187,23 +166,13 @@ _farcull() {
   COMPREPLY=()
   for word in $candidates; do
     case $word in
-      @files)
+      @files | @folders | @meshes)
         compopt -o filenames 2>/dev/null || :
-        while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -f -- "$current")
-        ;;
-      @folders)
-        compopt -o filenames 2>/dev/null || :
-        while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -d -- "$current")
-        ;;
-      @meshes)
-        compopt -o filenames 2>/dev/null || :
-        while IFS= read -r word; do
-          case $word in
-            *.[oO][bB][jJ] | *.[oO][fF][fF] | *.[pP][lL][yY] | *.[sS][tT][lL] | *.json | \
-              *.obj.gz | *.off.gz | *.ply.gz | *.stl.gz) COMPREPLY+=("$word") ;;
-            *) if [[ -d $word ]]; then COMPREPLY+=("$word"); fi ;;
-          esac
-        done < <(compgen -f -- "$current")
+        kind=f
+        if [[ $word == @folders ]]; then kind=d; fi
+        while IFS= read -r path; do
+          if [[ $word != @meshes || -d $path || $path =~ $mesh ]]; then COMPREPLY+=("$path"); fi
+        done < <(compgen "-$kind" -- "$current")
         ;;
       "$current"*) COMPREPLY+=("${word#"$prefix"}") ;;
     esac

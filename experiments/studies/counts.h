@@ -188,8 +188,7 @@ using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 /// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong`
 /// count the answers that differ from those for closed triangles; names with `own_` count those
 /// that differ from what the library's documentation guarantees. `scores` holds these counts
-/// for each family, parameter and kind. example_FAULT names, for each fault, a family and its
-/// smallest pair with this fault whose answer the documentation guarantees.
+/// for each family, parameter and kind.
 struct LibraryCounts {
   NamedCounts values = {};
 };
