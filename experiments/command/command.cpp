@@ -39,7 +39,7 @@ namespace farcull {
 
 namespace {
 
-DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
+DeclaredCommand declared_below(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
   out.name = parents.empty() ? app.get_name() : parents + " " + app.get_name();
   for (const CLI::Option* option : app.get_options()) {
@@ -53,13 +53,13 @@ DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
     (option->get_positional() ? out.arguments : out.options).push_back(std::move(one));
   }
   for (const CLI::App* command : app.get_subcommands({}))
-    out.commands.push_back(declared(*command, out.name));
+    out.commands.push_back(declared_below(*command, out.name));
   return out;
 }
 
 }  // namespace
 
-DeclaredCommand declared(const CLI::App& app) { return declared(app, ""); }
+DeclaredCommand declared(const CLI::App& app) { return declared_below(app, ""); }
 
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer) {
