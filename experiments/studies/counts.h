@@ -111,6 +111,15 @@ struct LemmaCounts {
                  step_px, radius_px, budget_px, promises, revoked)
 };
 
+/// Where the published radius may miss a pair: in one of the views x, y and z the distance (|x| +
+/// |y|) of the contact from a corner of the pixels is at most corner_px, and both rectangles are
+/// turned from a diagonal by at most the angle of this cosine (placements.cpp derives both). The
+/// probability is the sum over the views: 3 * 2 corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
+struct CornerStratum {
+  double corner_px = 0, corner_cosine = 0;
+  FARCULL_FIELDS(corner_px, corner_cosine)
+};
+
 /// Counts of a PlacementPoint (run_point.h).
 struct PlacementCounts {
   std::uint64_t placements = 0;
@@ -120,8 +129,9 @@ struct PlacementCounts {
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
   bool promises = false;
+  std::optional<CornerStratum> stratum = {};  // from which placements were drawn; empty: from all
   FARCULL_FIELDS(placements, colliding_placements, missed_placements, colliding, missed,
-                 largest_miss_px, radius_px, budget_px, promises)
+                 largest_miss_px, radius_px, budget_px, promises, stratum)
 };
 
 /// Counts of a point of the study "model": a method that may miss, at several positions of the grid

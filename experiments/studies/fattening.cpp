@@ -275,6 +275,21 @@ std::vector<RadiusRule> radii(bool quick) {
   return out;
 }
 
+// Pairs at the published radius for each number of subpixel bits, with the side at which most are
+// missed; other sides; twice the stratum, which must give the same rate; a device; pairs drawn
+// anywhere, where few bits miss enough of them; last the budget radius, and pairs at risk there.
+constexpr struct {
+  const char* radius;
+  double side;  // px
+  int bits, widening;
+  std::uint64_t thousands;  // of placements
+} kPairs[] = {{"published", 0x1p-4, 4, 1, 250},  {"published", 0x1p-6, 6, 1, 250},
+              {"published", 0x1p-8, 8, 1, 250},  {"published", 0x1p-10, 10, 1, 250},
+              {"published", 0x1p-9, 8, 1, 250},  {"published", 0x1p-5, 8, 1, 250},
+              {"published", 0x1p-8, 8, 2, 1000}, {"published", 0x1p-8, 0, 1, 250},
+              {"published", 0x1p-3, 3, 1, 100},  {"published", 0x1p-3, 3, 0, 1000},
+              {"budget", 0x1p-8, 8, 1, 250},     {"0.9", 0x1p-8, 8, 1, 250}};
+
 struct Size {
   double side;  // px
   std::uint64_t placements;
@@ -282,10 +297,11 @@ struct Size {
 
 constexpr double kSmallest = 0x1p-5;  // px; few missed pairs are kept because of other pairs
 
-// Three series: (1) with 8 subpixel bits, triangles of each size at the published radius (10^6
+// Four series: (1) with 8 subpixel bits, triangles of each size at the published radius (10^6
 // placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius; (2) the
 // smallest triangles at the published radius, with other numbers of subpixel bits and at other
-// resolutions; (3) the smallest triangles at the budget radius, which must miss none.
+// resolutions; (3) the smallest triangles at the budget radius, which must miss none;
+// (4) pairs.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;
@@ -321,6 +337,17 @@ std::vector<PlacementPoint> placements(const GridChoice& choice) {
         add(smallest, kUsualBits, kPublishedRadius, resolution);
       for (const int bits : {0, 4, kUsualBits})
         add(smallest, bits, kBudgetRadius, usual_resolution);
+    }
+    for (const auto& row : kPairs) {
+      out.push_back({.from = from,
+                     .pairs = true,
+                     .widening = row.widening,
+                     .side = row.side,
+                     .placements = row.thousands * (choice.quick ? 20 : 1000),
+                     .subpixel_bits = row.bits,
+                     .radius = parse_radius(row.radius),
+                     .resolution = usual_resolution,
+                     .seed = choice.seed});
     }
   }
   return out;

@@ -14,6 +14,7 @@
 #include "experiments/method/plan.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "offsets/offsets.h"
 
 namespace farcull {
 namespace {
@@ -68,16 +69,15 @@ class Quarry {
          const std::vector<std::vector<std::uint32_t>>& around)
       : scene_(scene), object_(object), around_(around) {}
 
-  /// Returns kPatchTriangles triangles: a random one and the nearest to it over shared vertices. If
-  /// these are too few (soups have no neighbours), others are drawn and put beside the first. The
-  /// patch is centred, scaled to a mean longest side of `side`, and turned at random.
-  std::vector<Corners> cut(Random& random, double side) const {
+  /// Returns `count` triangles: a random one and the nearest to it over shared vertices. If these
+  /// are too few (soups have no neighbours), others are drawn and put beside the first. The patch
+  /// is centred, scaled to a mean longest side of `side`, and turned at random.
+  std::vector<Corners> cut(Random& random, std::uint32_t count, double side) const {
     std::vector<std::uint32_t> taken = {random.below(object_.triangle_count)};
-    for (std::size_t i = 0; i < taken.size() && taken.size() < kPatchTriangles; ++i) {
+    for (std::size_t i = 0; i < taken.size() && taken.size() < count; ++i) {
       for (const std::uint32_t v : triangle(taken[i])) {
         for (const std::uint32_t t : around_[v]) {
-          if (taken.size() < kPatchTriangles &&
-              std::find(taken.begin(), taken.end(), t) == taken.end())
+          if (taken.size() < count && std::find(taken.begin(), taken.end(), t) == taken.end())
             taken.push_back(t);
         }
       }
@@ -86,7 +86,7 @@ class Quarry {
     for (const std::uint32_t t : taken) out.push_back(corners_of(t));
     const Vec3 middle = mean(out[0]);
     const double reach = longest(out[0]);
-    while (out.size() < kPatchTriangles) {
+    while (out.size() < count) {
       Corners more = corners_of(random.below(object_.triangle_count));
       // The triangle is scaled to the size of the first one, and moved near it.
       const double size = longest(more);
@@ -153,9 +153,39 @@ void shift(std::vector<Corners>& patch, const Vec3& by) {
 }
 
 // Moves the second patch so that a random point of it is at a random point of the first patch.
-void cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
+// Returns that point.
+Vec3 cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Vec3 to = inner(one[random.below(one.size())], random);
   shift(other, to - inner(other[random.below(other.size())], random));
+  return to;
+}
+
+// Turns a triangle about an axis until the longest edge of its image, along which its rectangle is
+// drawn (offsets/fit.inl), has a random direction whose angle to a diagonal of the pixels has at
+// least this cosine. No sines, as in Quarry::turn().
+void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random) {
+  const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+  double x = 0, y = 0, length = 0;
+  do {
+    x = random.between(-1, 1);
+    y = random.between(-1, 1);
+    length = std::sqrt(x * x + y * y);
+  } while (!(length <= 1 && length > 0.1 &&
+             std::abs(x) + std::abs(y) >= std::sqrt(2.0) * cosine * length));
+  double longest = 0, c = 1, s = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
+    const double image = std::sqrt(edge[right] * edge[right] + edge[up] * edge[up]);
+    if (!(image > longest)) continue;
+    longest = image;
+    c = (edge[right] * x + edge[up] * y) / (image * length);
+    s = (edge[right] * y - edge[up] * x) / (image * length);
+  }
+  for (Vec3& p : corners) {
+    const double from = p[right];
+    p[right] = c * from - s * p[up];
+    p[up] = s * from + c * p[up];
+  }
 }
 
 // Reflects and moves the second patch so that its corner farthest from its middle pokes through a
@@ -206,13 +236,34 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
   }
 }
 
-PlacedPatches PatchSource::place(bool grazing, double side, int resolution, std::uint64_t most,
-                                 std::uint64_t seed) const {
+// Snapping to multiples of g moves an edge with the unit normal n inward by at most g/2 (|n.x| +
+// |n.y|), which is g/sqrt(2) cos(t) where n is at the angle t from a diagonal. Let the contact be q
+// away from a corner of the pixels. The rectangle of a triangle reaches at least r = sqrt(1/2)
+// beyond the contact, so it loses the pixel centre on this diagonal only if
+//   n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
+// A pair is missed if one rectangle loses two opposite ones of the four centres around the corner,
+// and the other one the other two: the bound holds for n and -n, of both. So cos(t) > 1 / (1 + g),
+// and q is inside both strips. All such pairs of strips are inside |q.x| + |q.y| < px, which two
+// at opposite angles reach where px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 is largest for px.
+CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
+  // Floats next to the edge of the window are multiples of 2^-25 of its side.
+  const double grid =
+      subpixel_bits > 0 ? std::ldexp(1.0, -subpixel_bits) : std::ldexp(resolution, -25);
+  const double reach = 0.5 * (1 + grid);
+  CornerStratum out{widening * (reach - std::sqrt(0.5 - reach * reach)), 1 / (1 + grid)};
+  for (int times = 1; times < widening; times *= 2)  // the cosine of twice the angle
+    out.corner_cosine = std::max(std::sqrt(0.5), 2 * out.corner_cosine * out.corner_cosine - 1);
+  return out;
+}
+
+PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratum& stratum,
+                                 std::uint64_t most, std::uint64_t seed) const {
   Random random(seed);
   const Quarry first(from_, from_.objects[0], around_[0]),
       second(from_, from_.objects[1], around_[1]);
-  const double cell = cell_of(side), room = 0.5 * cell - 2;
-  const auto n = static_cast<std::uint64_t>(std::floor(resolution / cell));
+  const double cell = cell_of(point.side), room = 0.5 * cell - 2, half = 0.5 * point.resolution;
+  const auto n = static_cast<std::uint64_t>(std::floor(point.resolution / cell));
+  const std::uint32_t count = point.pairs ? 1 : kPatchTriangles;
   if (n < 1) throw std::logic_error("place_patches: the window is smaller than a placement");
   PlacedPatches out;
   std::vector<Corners> one, other;
@@ -221,16 +272,39 @@ PlacedPatches PatchSource::place(bool grazing, double side, int resolution, std:
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
     do {  // Patches that leave their cell would meet their neighbours, so they are drawn again.
-      a = first.cut(random, side);
-      b = second.cut(random, side);
-      (grazing ? graze : cross)(a, b, random);
+      a = first.cut(random, count, point.side);
+      b = second.cut(random, count, point.side);
+      if (point.grazing) {
+        graze(a, b, random);
+        continue;
+      }
+      const Vec3 contact = cross(a, b, random);
+      if (!point.pairs) continue;
+      for (auto* patch : {&a, &b}) shift(*patch, -contact);
     } while (std::max(reach_of(a), reach_of(b)) > room);
-    const Vec3 at = cell * Vec3(i, j, diagonal) + random.in_cube(0.5);
+    Vec3 at = random.in_cube(0.5);
+    if (point.widening > 0) {
+      const auto axis = static_cast<int>(random.below(3));
+      const double s = random.between(-0.5, 0.5), t = random.between(-0.5, 0.5);
+      at[(axis + 1) % 3] = stratum.corner_px * (s + t);
+      at[(axis + 2) % 3] = stratum.corner_px * (s - t);
+      for (auto* patch : {&a, &b})
+        turn_to_diagonal(patch->front(), axis, stratum.corner_cosine, random);
+    }
+    at += cell * Vec3(i, j, diagonal);
+    if (point.pairs) at.array() += std::ceil(0.5 * cell) - half;
     shift(a, at);
     shift(b, at);
     one.insert(one.end(), a.begin(), a.end());
     other.insert(other.end(), b.begin(), b.end());
     ++out.placements;
+  }
+  if (point.pairs) {
+    // Points that touch make the window -half to half, so that whole numbers are corners of pixels.
+    for (const double end : {-half, half}) {
+      for (auto* list : {&one, &other})
+        list->push_back({Vec3::Constant(end), Vec3::Constant(end), Vec3::Constant(end)});
+    }
   }
   SceneBuilder scene("placements", "placements");
   scene.add(shapes::soup(one), "first");
@@ -269,7 +343,7 @@ std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) 
   std::vector<std::uint32_t> words;
   for (const std::uint64_t number :
        {point.seed, window, side, static_cast<std::uint64_t>(point.resolution),
-        static_cast<std::uint64_t>(point.grazing)}) {
+        static_cast<std::uint64_t>(point.grazing + 2 * point.pairs + 4 * point.widening)}) {
     words.push_back(static_cast<std::uint32_t>(number));
     words.push_back(static_cast<std::uint32_t>(number >> 32));
   }
@@ -290,13 +364,25 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
   PlacementCounts counts;
   counts.promises = guaranteed(options);
   PointResult out{.device = "native"};
+  int bits = point.subpixel_bits;
+  Canvas* asked = nullptr;  // the device's; else one for each window
+  if (point.pairs && bits == 0) {
+    const bool native = lab.session().canvas_device().native;
+    asked = &lab.session().canvas(
+        obb_fattener(), {.depth_format = DepthFormat::float32, .query = QueryMode::flags});
+    if (!native) {
+      bits = asked->limits().subpixel_bits;
+      out.device = lab.session().context().info().renderer;
+    }
+  }
+  const CornerStratum stratum = corner_stratum(point.widening, bits, point.resolution);
+  if (point.widening > 0) counts.stratum = stratum;
   for (std::uint64_t window = 0; counts.placements < point.placements; ++window) {
     if (lab.progress()) {
       lab.progress()(fmt::format("{} of {} placements", counts.placements, point.placements));
     }
-    const PlacedPatches placed =
-        source.place(point.grazing, point.side, point.resolution,
-                     point.placements - counts.placements, placement_seed(point, window));
+    const PlacedPatches placed = source.place(point, stratum, point.placements - counts.placements,
+                                              placement_seed(point, window));
     const Scene& scene = lab.scene(fmt::format("{} {} px, seed {}, window {}", key_of(point).scene,
                                                point.resolution, point.seed, window),
                                    [&] { return placed.scene; });
@@ -308,7 +394,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     if (!work.fatteners.empty()) {
       settings.fattener = work.fatteners.front();
       SnappingCanvas canvas(settings.fattener, point.subpixel_bits, lab.session().threads());
-      const CullResult result = cull(scene, work.regions, settings, canvas);
+      const CullResult result = cull(scene, work.regions, settings, asked ? *asked : canvas);
       for (const std::uint32_t t : result.live) kept[t] = 1;
       for (const ViewReport& view : result.views) {
         if (view.drawn) pixel = std::min(pixel, view.pixel_size);
@@ -319,7 +405,8 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     counts.placements += placed.placements;
     std::vector<std::uint8_t> collides(placed.placements), misses(placed.placements);
     for (const TrianglePair& pair : lab.truth().pairs) {
-      const std::uint64_t at = pair.a / kPatchTriangles;
+      const std::uint64_t at = pair.a / (point.pairs ? 1 : kPatchTriangles);
+      if (at >= placed.placements) continue;  // points that make the window
       collides[at] = 1;
       ++counts.colliding;
       if (kept[pair.a] && kept[pair.b]) continue;

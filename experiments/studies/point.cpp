@@ -107,8 +107,10 @@ PointKey key_of(const LemmaPoint& point) {
 
 PointKey key_of(const PlacementPoint& point) {
   PointKey key;
-  key.scene = fmt::format("{}@{}:{}:{}", point.from, point.grazing ? "grazing" : "crossing",
-                          point.side, point.placements);
+  const std::string kind = point.pairs     ? fmt::format("pair{}", point.widening)
+                           : point.grazing ? "grazing"
+                                           : "crossing";
+  key.scene = fmt::format("{}@{}:{}:{}", point.from, kind, point.side, point.placements);
   key.method = point.subpixel_bits > 0 ? fmt::format("far-snapped-{}", point.subpixel_bits) : "far";
   key.offset = "obb";
   key.radius = point.radius;

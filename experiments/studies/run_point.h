@@ -136,21 +136,24 @@ Fragments count_fragments(const Scene& scene, const Record& record, const std::s
 constexpr std::uint32_t kPatchTriangles = 8;
 
 /// The placements of one scene: two objects, the first and the second patch of each placement in
-/// the order of the placements, kPatchTriangles triangles each. A unit is about a pixel.
+/// the order of the placements, kPatchTriangles triangles each. A unit is about a pixel. Of pairs
+/// each patch is one triangle, a unit is a pixel, and two points at the ends make the window.
 struct PlacedPatches {
   Scene scene;
   std::uint64_t placements = 0;
 };
+
+/// widening: as in PlacementPoint. subpixel_bits: 0 if only floats round the corners.
+CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution);
 
 /// Cuts patches from the first two objects of a scene.
 class PatchSource {
  public:
   explicit PatchSource(Scene from);
 
-  /// Returns as many placements as a window of `resolution` pixels holds, at least one and at most
-  /// `most`, drawn with `seed`. grazing, side: as in PlacementPoint. Throws std::logic_error if
-  /// none fits.
-  PlacedPatches place(bool grazing, double side, int resolution, std::uint64_t most,
+  /// Returns as many placements as the point's window holds, at least one and at most `most`, drawn
+  /// with `seed`. Throws std::logic_error if none fits.
+  PlacedPatches place(const PlacementPoint& point, const CornerStratum& stratum, std::uint64_t most,
                       std::uint64_t seed) const;
 
  private:
@@ -169,8 +172,9 @@ double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 
 /// Runs FAR on scene after scene, with oriented boxes and fragment depth in the views x, y, z, on
 /// the native canvas, until all placements of the point are done. With subpixel bits, corners of
-/// proxies are snapped to multiples of 2^-bits px before drawing, as devices do. Exact predicates
-/// decide which pairs collide. The counts are PlacementCounts.
+/// proxies are snapped to multiples of 2^-bits px before drawing, as devices do; without, pairs are
+/// drawn on the device of the run. Exact predicates decide which pairs collide. The counts are
+/// PlacementCounts.
 PointResult measure_placements(const PlacementPoint& point, MeasurementContext& lab);
 
 }  // namespace farcull

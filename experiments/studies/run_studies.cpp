@@ -533,6 +533,8 @@ Study on_devices(const Study& study) {
     std::vector<Point> points = grid(choice);
     std::erase_if(points, [](const Point& point) {
       if (const auto* run = std::get_if<RunPoint>(&point)) return !draws(run->method);
+      if (const auto* placed = std::get_if<PlacementPoint>(&point))
+        return !placed->pairs || placed->subpixel_bits > 0;
       const auto* lemma = std::get_if<LemmaPoint>(&point);
       return lemma == nullptr || lemma->worst;
     });

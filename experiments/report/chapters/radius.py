@@ -225,11 +225,44 @@ def placement_table(placements):
     return out
 
 
+# ---- pairs
+
+def add_pairs(chapter, pairs):
+    """Adds the estimated rates of pairs that were drawn from strata: the probability of the stratum times the share with a
+    miss. The sum over the three views counts placements that are in the strata of two of them twice, so the estimate is
+    too large by at most the factor 1 + 2 corner_px."""
+    out = Table("radius-pairs", "Random placements of two single triangles in which FAR misses them. The rate is estimated: "
+                "the probability of the stratum from which the placements are drawn, times the share with a miss, with its 95 "
+                "% interval, or the 95 % bound. Of three bits all placements show the rate too",
+                columns(["radius", "snapped to (bits)"], ["side (px)", "stratum, times as wide", "its probability", "with a miss",
+                                                          "rate", "interval", "one in"]))
+    said = []
+    for (radius, bits, side, contact), rows in groups(pairs, ["radius", "bits", "side", "contact"]):
+        px, cosine = (column(rows, name).max() for name in ("corner_px", "corner_cosine"))
+        inside = 1 if contact == "pair0" else 6 * px ** 2 * (4 * math.acos(cosine) / math.pi) ** 2
+        missed, colliding = total(rows, "missed_placements"), total(rows, "colliding_placements")
+        rate = rate_of(missed, colliding)
+        value, low, high = (rounded(inside * x, 2) for x in (rate.value, rate.low, rate.high))
+        times = rounded(1 / (inside * (rate.value or rate.high)), 2)
+        out.rows.append([
+            radius, str(bits) if bits else "not snapped" if rows.device.iloc[0] == "native" else rows.device.iloc[0],
+            rounded(side), contact[4:] if inside < 1 else "all", rounded(inside, 2), of_all(missed, colliding), value,
+            f"{low} to {high}" if missed else f"at most {high}", times if missed else f"over {times}"])
+        if radius == "published" and bits > 3 and contact == "pair1" and side == 2.0 ** -bits and missed:
+            said.append(f"one in {times} with {bits_text(bits)}")
+    if said:
+        chapter.find("Of single triangles whose sides are a subpixel long, placed into each other at random, the published "
+                     f"radius misses an estimated {listed(said)}.")
+    chapter.tables.append(out)
+
+
 def fill(chapter, study):
     rows = with_axes(study.rows)
     lemma = rows.method.str.startswith("lemma")
     placed = ~lemma & rows.scene.str.contains("@crossing:|@grazing:")
-    lemmas, placements, runs = rows[lemma], with_placements(rows[placed]), rows[~lemma & ~placed]
+    paired = ~lemma & rows.scene.str.contains("@pair[0-9]:")
+    lemmas, placements, pairs = rows[lemma], with_placements(rows[placed]), with_placements(rows[paired])
+    runs = rows[~lemma & ~placed & ~paired]
     lemmas = lemmas.assign(generator=[scene.split(":")[1] for scene in lemmas.scene])
     add_headline(chapter, runs, placements)
     add_promises(chapter, study)
@@ -243,3 +276,5 @@ def fill(chapter, study):
     if len(placements):
         chapter.figures += [figure for figure in [placement_figure(placements)] if figure.panels]
         chapter.tables.append(placement_table(placements))
+    if len(pairs):
+        add_pairs(chapter, pairs)

@@ -112,6 +112,8 @@ Measurement made_up(const PointKey& point) {
                 {"placements", 1000},
                 {"colliding_placements", 900},
                 {"missed_placements", reliable(point) ? 0 : missed % 5},
+                {"corner_px", 0.004},
+                {"corner_cosine", 0.996},
                 {"largest_miss_px", reliable(point) ? 0.0 : unit(point, "miss")},
                 // Of the model, whose predictions are up to a third too large.
                 {"positions", 4},

@@ -297,7 +297,8 @@ TEST(Placements, LengthsOfIntersections) {
 TEST(Placements, AreTheSameForASeed) {
   const PatchSource source(make_builtin_scene("random-soup"));
   const auto vertices = [&](std::uint64_t seed) {
-    return source.place(true, 0.25, 64, 20, seed).scene.vertices;
+    return source.place({.grazing = true, .side = 0.25, .resolution = 64}, {}, 20, seed)
+        .scene.vertices;
   };
   EXPECT_EQ(vertices(5), vertices(5));
   EXPECT_NE(vertices(5), vertices(6));
@@ -330,6 +331,47 @@ TEST(Placements, AreMissedOnlyBelowTheBudget) {
   EXPECT_GT(small.missed_placements, 0u);
   EXPECT_LE(small.missed_placements, small.colliding_placements);
   EXPECT_GT(small.largest_miss_px, 0);
+}
+
+// The stratum holds what the published radius misses on a device that snaps. The twins: the budget
+// radius misses nothing there, 0.9 of it every pair, and without snapping nothing is missed.
+TEST(Placements, OfPairsAreMissedAtThePublishedRadiusNearPixelCorners) {
+  MeasurementContext lab("native");
+  const auto counts = [&](const std::string& radius, int bits, int widening) {
+    const PlacementPoint point{.from = "random-soup",
+                               .pairs = true,
+                               .widening = widening,
+                               .side = 0x1p-4,
+                               .placements = 40'000,
+                               .subpixel_bits = bits,
+                               .radius = parse_radius(radius),
+                               .resolution = 1024};
+    const auto out = std::get<PlacementCounts>(measure_placements(point, lab).counts);
+    EXPECT_EQ(out.colliding, out.colliding_placements) << "not the points that make the window";
+    EXPECT_GT(out.colliding_placements, 39'000u);
+    return out;
+  };
+  const PlacementCounts published = counts("published", 4, 1);
+  EXPECT_GT(published.missed, 0u);
+  EXPECT_EQ(published.promises, false);
+  EXPECT_EQ(counts("published", 4, 0).missed, 0u) << "anywhere: one in 1.7 million is missed";
+  EXPECT_EQ(counts("published", 0, 1).missed, 0u);
+  EXPECT_EQ(counts("budget", 4, 1).missed, 0u);
+  const PlacementCounts smaller = counts("0.8", 4, 1);
+  EXPECT_GT(10 * smaller.missed, 9 * smaller.colliding);
+}
+
+TEST(Placements, AStratumHoldsTheLimitsOfTheProof) {
+  for (const int bits : {4, 8}) {
+    const double grid = std::ldexp(1, -bits);
+    const CornerStratum once = corner_stratum(1, bits, 1024), twice = corner_stratum(2, bits, 1024);
+    double largest = 0;  // of px over all angles, by the bound of the proof
+    for (double t = 0; std::cos(t) > 1 / (1 + grid); t += 1e-5)
+      largest = std::max(largest, ((1 + grid) * std::cos(t) - 1) / (std::cos(t) - std::sin(t)));
+    EXPECT_NEAR(once.corner_px, largest, 1e-9);
+    EXPECT_NEAR(std::acos(twice.corner_cosine), 2 * std::acos(once.corner_cosine), 1e-9);
+    EXPECT_EQ(twice.corner_px, 2 * once.corner_px);
+  }
 }
 
 }  // namespace
