@@ -297,8 +297,9 @@ TEST(Placements, LengthsOfIntersections) {
 TEST(Placements, AreTheSameForASeed) {
   const PatchSource source(make_builtin_scene("random-soup"));
   const auto vertices = [&](std::uint64_t seed) {
-    return source.place({.grazing = true, .side = 0.25, .resolution = 64}, {}, 20, seed)
-        .scene.vertices;
+    const PlacementPoint point{
+        .from = "random-soup", .grazing = true, .side = 0.25, .resolution = 64};
+    return source.place(point, {}, 20, seed).scene.vertices;
   };
   EXPECT_EQ(vertices(5), vertices(5));
   EXPECT_NE(vertices(5), vertices(6));
@@ -334,7 +335,7 @@ TEST(Placements, AreMissedOnlyBelowTheBudget) {
 }
 
 // The stratum holds what the published radius misses on a device that snaps. The twins: the budget
-// radius misses nothing there, 0.9 of it every pair, and without snapping nothing is missed.
+// radius misses nothing there, 0.8 of it most pairs, and without snapping nothing is missed.
 TEST(Placements, OfPairsAreMissedAtThePublishedRadiusNearPixelCorners) {
   MeasurementContext lab("native");
   const auto counts = [&](const std::string& radius, int bits, int widening) {
@@ -358,7 +359,7 @@ TEST(Placements, OfPairsAreMissedAtThePublishedRadiusNearPixelCorners) {
   EXPECT_EQ(counts("published", 0, 1).missed, 0u);
   EXPECT_EQ(counts("budget", 4, 1).missed, 0u);
   const PlacementCounts smaller = counts("0.8", 4, 1);
-  EXPECT_GT(10 * smaller.missed, 9 * smaller.colliding);
+  EXPECT_GT(2 * smaller.missed, smaller.colliding);
 }
 
 TEST(Placements, AStratumHoldsTheLimitsOfTheProof) {
