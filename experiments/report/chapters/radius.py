@@ -231,9 +231,9 @@ def add_pairs(chapter, pairs):
     """Adds the estimated rates of pairs that were drawn from strata: the probability of the stratum times the share with a
     miss. The sum over the three views counts placements that are in the strata of two of them twice, so the estimate is
     too large by at most the factor 1 + 2 corner_px."""
-    out = Table("radius-pairs", "Random placements of two single triangles in which FAR misses them. The rate is estimated: "
-                "the probability of the stratum from which the placements are drawn, times the share with a miss, with its 95 "
-                "% interval, or the 95 % bound. Of three bits all placements show the rate too",
+    out = Table("radius-pairs", "Estimated rate of placements of two single triangles in which FAR misses them: the "
+                "probability of the stratum from which they are drawn, times the share with a miss, with its 95 % interval, or "
+                "the 95 % bound. Misses of smaller radii are in other placements too",
                 columns(["radius", "snapped to (bits)"], ["side (px)", "stratum, times as wide", "its probability", "with a miss",
                                                           "rate", "interval", "one in"]))
     said = []
@@ -243,7 +243,7 @@ def add_pairs(chapter, pairs):
         missed, colliding = total(rows, "missed_placements"), total(rows, "colliding_placements")
         rate = rate_of(missed, colliding)
         value, low, high = (rounded(inside * x, 2) for x in (rate.value, rate.low, rate.high))
-        times = rounded(1 / (inside * (rate.value or rate.high)), 2)
+        times = f"{1 / (inside * (rate.value or rate.high)):.2g}"
         out.rows.append([
             radius, str(bits) if bits else "not snapped" if rows.device.iloc[0] == "native" else rows.device.iloc[0],
             rounded(side), contact[4:] if inside < 1 else "all", rounded(inside, 2), of_all(missed, colliding), value,
