@@ -241,10 +241,13 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
 // away from a corner of the pixels. The rectangle of a triangle reaches at least r = sqrt(1/2)
 // beyond the contact, so it loses the pixel centre on this diagonal only if
 //   n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
-// A pair is missed if one rectangle loses two opposite ones of the four centres around the corner,
-// and the other one the other two: the bound holds for n and -n, of both. So cos(t) > 1 / (1 + g),
-// and q is inside both strips. All such pairs of strips are inside |q.x| + |q.y| < px, which two
-// at opposite angles reach where px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 is largest for px.
+// A pair is missed if each of the four centres around the corner is lost by one of both. If each
+// triangle loses two opposite centres, the bound holds for n and -n. So cos(t) > 1 / (1 + g), and q
+// is inside both strips. All such pairs of strips are inside |q.x| + |q.y| < px, which two at
+// opposite angles reach where px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 is largest for px. If they
+// share the centres in another way, the bounds of both have a positive sum, so that an angle is at
+// most sqrt(2) times as large and, from 8 bits on, px at most 1.4 times. Such misses are in the
+// stratum that is twice as wide, and the rates of both show how many there are.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
   // Floats next to the edge of the window are multiples of 2^-25 of its side.
   const double grid =
