@@ -247,7 +247,10 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
 // opposite angles reach where px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 is largest for px. If they
 // share the centres in another way, the bounds of both have a positive sum, so that an angle is at
 // most sqrt(2) times as large and, from 8 bits on, px at most 1.4 times. Such misses are in the
-// stratum that is twice as wide, and the rates of both show how many there are.
+// stratum that is twice as wide, and the rates of both show how many there are. One triangle alone
+// does not lose all four, to first order in g: of the corners of its rectangle two are 2 px or more
+// apart in x and the other two in y, also when they are rounded to multiples of g, and the sum of
+// the four conditions says that one of both distances is below 2 px.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
   // Floats next to the edge of the window are multiples of 2^-25 of its side.
   const double grid =
