@@ -54,8 +54,8 @@ constexpr const char* kExamples =
     "closed parts no longer overlap; the true one lies between. curve: length of the curve in\n"
     "which the surfaces cross. docs/clash.md has the columns and the proofs.\n"
     "A comma, colon or * that is part of a name is written with \\ before it, as in 'a\\,b:c'.\n\n"
-    "Exit status 0: none of the words of --fail-on, in no frame. 1: one of them; also if a\n"
-    "pair was not examined, since a part has no triangles. 2: the input or an option is wrong.";
+    "Exit status 0: no pair has a verdict of --fail-on, in any frame. 1: one has; also if a pair\n"
+    "was not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // of a file of --compare
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
@@ -130,7 +130,7 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
                "with touch, pairs that touch are listed as well; with\nnew, only rows that "
                "--compare calls new count; default\nclash,contained,unknown"},
               {"--frames", &frames_, "N|A:B",
-               "in each of these frames, as of farcull run --frames;\n"
+               "examine each of these frames, as farcull run --frames;\n"
                "the table has the worst verdict of each pair"},
               {"--unit", &unit_, "WORD", "the unit of lengths, for the output, such as mm"},
               {"--csv", &outputs_.csv, "FILE",
@@ -228,30 +228,43 @@ int ClashCommand::run_frames(const SceneArguments& files, FrameRange range, cons
   const Progress progress = terminal.callback("reading the scene");
   FrameSource source(files, range, false);
   if (const std::optional<Error> missing = source.missing()) throw *missing;
-  ClashFrames frames;
+  ClashFrames frames(range.count());
   bool broken = false;
   std::optional<FrameRecord> json;
   std::optional<GrowingOutput> csv;
   if (outputs.json) json.emplace(*outputs.json);
   if (outputs.csv) csv.emplace(*outputs.csv);
-  for_each_frame(range, "what they gave is written", progress, "",
-                 [&](long frame, const Progress& named) {
-                   Scene scene = source.at(frame);
-                   const bool first = frame == range.first;
-                   if (first) options.tolerance = tolerance.length(bounds(scene));
-                   prepare(scene, options, first ? UnknownName::refused : UnknownName::passed_over);
-                   const ClashRecord record = clashes(scene, options, named);
-                   terminal.clear();
-                   say_notes();
-                   broken = fails(record, table) || broken;
-                   const ClashFrames::Report report = frames.add(scene, record, table, frame);
-                   if (json) json->add(report.head, report.frame, report.summary);
-                   if (csv) csv->add(report.csv, "");
-                   if (!outputs.to_stdout()) print(report.text);
-                 });
+  const auto print_pairs = [&] {
+    terminal.clear();
+    if (!outputs.to_stdout()) print(frames.text(table));
+  };
+  try {
+    for_each_frame(
+        range, json || csv ? "what they gave is written" : "no file was asked for with their pairs",
+        progress, "", [&](long frame, const Progress& named) {
+          Scene scene = source.at(frame);
+          const bool first = frame == range.first;
+          if (first) options.tolerance = tolerance.length(bounds(scene));
+          prepare(scene, options, first ? UnknownName::refused : UnknownName::passed_over);
+          if (options.only && options.only->empty())
+            throw Error("--only", fmt::format("frame {} has none of these pairs", frame),
+                        "name pairs that each frame has, or other frames");
+          const ClashRecord record = clashes(scene, options, named);
+          terminal.clear();
+          say_notes();
+          broken = fails(record, table) || broken;
+          const ClashFrames::Report report = frames.add(scene, record, table, frame);
+          if (json) json->add(report.head, report.frame, report.summary);
+          if (csv) csv->add(report.csv, "");
+          if (!outputs.to_stdout()) print(report.text);
+        });
+  } catch (const Error&) {
+    print_pairs();  // of the frames before
+    throw;
+  }
   if (json) json->finish();
   if (csv) csv->finish();
-  if (!outputs.to_stdout()) print(frames.text(table));
+  print_pairs();
   return broken ? kExitBroken : kExitDone;
 }
 
@@ -259,14 +272,16 @@ int ClashCommand::run() const {
   ClashOptions options;
   options.depth = depth_;
   if (clearance_) options.clearance = parse_clearance(*clearance_);
-  const std::vector<ClashVerdict> failing = this->failing();
   check_scene(scene_.names);
   std::optional<FrameRange> range;
   if (frames_) {
     range = parse_frames(*frames_);
-    refuse_given({{"--html", outputs_.page.has_value()}, {"--compare", compare_.has_value()}},
+    refuse_given({{"--html", outputs_.page.has_value()},
+                  {"--compare", compare_.has_value()},
+                  {"--fail-on new", only_new()}},
                  "is of one frame", "leave it or --frames out");
   }
+  const std::vector<ClashVerdict> failing = this->failing();
   const SceneArguments files = parts();
   std::vector<NamedFile> inputs = scene_files(files.names, range);
   if (ignore_file_) inputs.push_back({"--ignore-file", *ignore_file_});

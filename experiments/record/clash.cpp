@@ -152,6 +152,13 @@ std::string counts_text(const ClashRecord& record) {
   return out;
 }
 
+std::string tolerance_text(const ClashRecord& record, const ClashTable& table) {
+  const double tolerance = record.options.tolerance;
+  if (!(tolerance > 0)) return "";
+  return fmt::format("tolerance  {:.6g}{}\n", tolerance,
+                     table.unit.empty() ? "" : " " + table.unit);
+}
+
 /// "2 new, 5 same, 1 gone".
 std::string compared_text(const ClashComparison& compared) {
   const auto same = static_cast<std::size_t>(std::ranges::count(compared.same, true));
@@ -307,9 +314,7 @@ std::string clash_text(const Scene& scene, const ClashRecord& record, const Clas
                      counted(record.asked, "pair", "pairs"),
                      is_clean(record, table.failing) ? ": clean" : "");
   out += "verdicts   " + counts_text(record) + "\n";
-  if (record.options.tolerance > 0)
-    out += fmt::format("tolerance  {:.6g}{}\n", record.options.tolerance,
-                       table.unit.empty() ? "" : " " + table.unit);
+  out += tolerance_text(record, table);
   if (table.compared) out += "compared   " + compared_text(*table.compared) + "\n";
   if (record.ignored > 0) {
     out += fmt::format("ignored    {}, of which {}\n", counted(record.ignored, "pair", "pairs"),
@@ -407,7 +412,8 @@ ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& reco
     for (const char* key : {"scene", "objects", "unit", "clearance", "tolerance", "commit"})
       head_[key] = all[key];
     out.csv = "frame," + line + "\n";
-    out.text = heading(scene) + fmt::format("\n{:>7}", "frame");
+    out.text = heading(scene) + tolerance_text(record, table) + hints_text(scene, record) +
+               fmt::format("\n{:>7}", "frame");
     for (const ClashVerdict v : kClashVerdicts) out.text += fmt::format("  {:>9}", to_string(v));
     out.text += "\n";
   }
@@ -426,7 +432,7 @@ ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& reco
       worst.verdict = row.verdict, worst.first = frame, worst.frames = 0;
     if (row.verdict == worst.verdict) worst.last = frame, ++worst.frames;
     worst.ignored = row.ignored;
-    if (row.depth && !(worst.depth >= row.depth->lo))
+    if (record.options.depth && row.depth && !(worst.depth >= row.depth->lo))
       worst.depth = row.depth->lo, worst.deepest = frame;
     if ((row.pairs > 0 || row.squared) && !(worst.distance && *worst.distance <= row.distance))
       worst.distance = row.distance, worst.nearest = frame;
@@ -434,7 +440,8 @@ ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& reco
   ++frames_;
   clean_ = clean_ && all["clean"];
   out.head = head_;
-  out.summary = {{"frames", frames_}, {"clean", clean_}, {"pairs", json_of(worst())}};
+  out.summary = {
+      {"wanted", wanted_}, {"frames", frames_}, {"clean", is_clean()}, {"pairs", json_of(worst())}};
   return out;
 }
 
@@ -463,7 +470,8 @@ std::string ClashFrames::text(const ClashTable& table) const {
              at(pair.depth, pair.deepest), at(pair.distance, pair.nearest)});
   }
   return (all == 0 ? "" : "\n" + out.text() + more_line(all, kRowsShown)) +
-         fmt::format("\n{}{}\n", counted(frames_, "frame", "frames"), clean_ ? ": clean" : "");
+         fmt::format("\n{} of {}{}\n", grouped(frames_), counted(wanted_, "frame", "frames"),
+                     is_clean() ? ": clean" : "");
 }
 
 }  // namespace farcull
