@@ -45,6 +45,7 @@ old.csv << name_a,name_b,verdict; a,clash
 bad compared with a broken table | old.csv:2: 2 cells under 3 names | clash parts --compare old.csv
 bad new without an earlier table | --fail-on: new needs an earlier table; name it with --compare | clash parts --fail-on new
 bad {one} of frames | {one}: is of one frame; leave it or --frames out | clash two-spheres --frames 2 {one} old.csv
+bad new in frames | --fail-on new: is of one frame; leave it or --frames out | clash two-spheres --frames 2 --fail-on new
 bad frames of what stands still | --frames: nothing in the scene moves | clash parts --frames 2
 bad compared with nothing | none.csv: | clash parts --compare none.csv
 bad compared with what is written | --csv: .* | clash parts --compare old.csv --csv old.csv
@@ -129,14 +130,21 @@ for frame, at in enumerate((4, 3, 2, 2.25, 2.5), 1):
     box(f'moves_{frame}.obj', (at, 0.25, 0.25), (at + 1, 0.75, 0.75))
 rows(r"""
 1 frames | clash moves_%d.obj wall.obj --frames 1:5 --clearance 1.5 --depth --unit mm --csv frames.csv --json frames.json
-  | ^ +3 +1 +0 +0 +0 +0 +0$ | ^ +5 +0 +0 +0 +1 +0 +0$ | ^clash +moves_%d +wall +2 +3 +4 +0.5 in 3 +0 in 3$ | ^5 frames$
+  | ^ +3 +1 +0 +0 +0 +0 +0$ | ^ +5 +0 +0 +0 +1 +0 +0$ | ^clash +moves_%d +wall +2 +3 +4 +0.5 in 3 +0 in 3$ | ^5 of 5 frames$
   | depth .mm. | @frames.csv #0 ^frame,name_a,name_b,id,verdict, | @frames.csv #3 ^3,moves_%d,wall,.*,clash, | @frames.csv #5 ^5,.*,touch,
   | $ python3 -c 'import json; r = json.load(open("frames.json")); s = r["summary"]; p = s["pairs"][0]; assert r["objects"] == ["moves_%d", "wall"] and [f["pairs"][0]["verdict"] for f in r["frames"]] == ["near", "near", "clash", "clash", "touch"] and "unit" not in r["frames"][0] and (p["verdict"], p["frames"], p["first"], p["last"], p["deepest"], p["distance"], p["nearest"]) == ("clash", 2, 3, 4, 3, 0, 3) and 0.499 < p["depth"] <= 0.5 and s["frames"] == 5 and not s["clean"], p'
-0 frames without a clash | clash moves_%d.obj wall.obj --frames 1:2 --clearance 1.5 | ^near +moves_%d +wall +2 +1 +2 +0.5 in 2$ | ^2 frames: clean$
+0 frames without a clash | clash moves_%d.obj wall.obj --frames 1:2 --clearance 1.5 | ^near +moves_%d +wall +2 +1 +2 +0.5 in 2$ | ^2 of 2 frames: clean$
 1 a word of --fail-on in one frame | clash moves_%d.obj wall.obj --frames 1:2 --clearance 0.6 --fail-on near | ^near +moves_%d +wall +1 +2 +2 +0.5 in 2$
 0 ignored in frames | clash moves_%d.obj wall.obj parts/c.obj --frames 1:5 --ignore 'moves*:wall' | ^clash .ignored. +moves_%d +wall +2 +3 +4
 0 a tolerance in frames | clash moves_%d.obj wall.obj --frames 3:5 --tolerance 0.6 --json - | "within_tolerance": 1 | "tolerance": 0.6,
 1 JSON of frames | clash moves_%d.obj wall.obj --frames 3:4 --json - | #0 ^{$ | #-1 ^}$ | ! ^worst
+0 deeper ones over frames are those of --depth alone | clash moves_%d.obj wall.obj --frames 3:4 --tolerance 0.3 --fail-on none --json - | "depth": null,
+$ for k in 1 2 3; do cp moves_$k.obj lost_$k.obj; done; echo 'v 0 0 0' > lost_4.obj
+2 frames until one is broken | clash lost_%d.obj wall.obj --frames 1:4 --json lost.json | @err lost_4.obj: the mesh has no triangles | ^clash +lost_%d +wall +1 +3 +3 | ^3 of 4 frames$
+  | @lost.json "wanted": 4, | @lost.json "frames": 3, | @lost.json "clean": false,
+2 a frame that could be clean is none | clash lost_%d.obj wall.obj --frames 4:4 | @err lost_4.obj: the mesh has no triangles
+$ printf '{"objects": [{"name": "still", "mesh": "wall.obj"}, {"name": "moves", "mesh": "moves_%%d.obj"}, {"name": "c", "mesh": "parts/c.obj"}]}' > only.json
+0 pairs that each frame has | clash only.json --frames 1:2 --only still:c | ^2 of 2 frames: clean$
 bad frames from another number | moves_0.obj: the file does not exist; .*: --frames 1:3 instead of 0:2$ | clash moves_%d.obj wall.obj --frames 3
 1 frames of a built-in scene | clash two-spheres --frames 2 | ^clash +first +second +2 +0 +1
 
