@@ -39,7 +39,7 @@ std::string joined(const std::vector<std::string>& words, const char* between = 
 // are those of an enumeration such as "fragment|fixed", or for a known placeholder (METHOD, SCENE,
 // FILE, ...) its values; @files stands for any file, @meshes for files that a scene is read from,
 // @folders for folders. Empty for numbers and other types.
-std::string how(const std::string& type) {
+std::string completion_words(const std::string& type) {
   for (const Option& option : run_options()) {
     if (type == option.type && !option.words.empty()) return joined(option.words);
   }
@@ -71,8 +71,10 @@ std::string table_of_words(const DeclaredCommand& program) {
     for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
     for (const DeclaredOption& option : command.options)
       options.insert(options.end(), option.names.begin(), option.names.end());
-    const std::string argument = command.arguments.empty() ? "" : how(command.arguments[0].type);
-    const std::string last = command.arguments.empty() ? "" : how(command.arguments.back().type);
+    const std::string argument =
+        command.arguments.empty() ? "" : completion_words(command.arguments[0].type);
+    const std::string last =
+        command.arguments.empty() ? "" : completion_words(command.arguments.back().type);
     out += fmt::format("    {})\n      below={} flags={}\n      first={} others={} ;;\n",
                        quoted(command.name), quoted(joined(commands)), quoted(joined(options)),
                        quoted(argument), quoted(last));
@@ -88,8 +90,8 @@ std::string table_of_values(const DeclaredCommand& program) {
       std::vector<std::string> patterns;
       for (const std::string& name : option.names)
         patterns.push_back(quoted(command.name + " " + name));
-      out +=
-          fmt::format("    {}) values={} ;;\n", joined(patterns, " | "), quoted(how(option.type)));
+      out += fmt::format("    {}) values={} ;;\n", joined(patterns, " | "),
+                         quoted(completion_words(option.type)));
     }
   });
   return out;

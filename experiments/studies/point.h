@@ -102,8 +102,8 @@ struct PlacementPoint {
   std::string from;      // built-in scene; patches are cut from its first two objects
   bool grazing = false;  // a corner of one patch pokes through the other; else they cross
   bool pairs = false;    // patches of one triangle, which cross
-  int widening = 0;      // of pairs: only from a CornerStratum so many times as wide, 1, 2 or 4
-  double side = 1;       // px, mean longest side of a triangle
+  int widening = 0;  // of pairs: from a CornerStratum so many times as wide, 1, 2 or 4; 0: anywhere
+  double side = 1;   // px, mean longest side of a triangle
   std::uint64_t placements = 0;
   /// Corners of proxies are snapped to 2^-bits px; 0: not, and pairs are drawn on the device.
   int subpixel_bits = 0;

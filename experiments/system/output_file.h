@@ -136,8 +136,8 @@ class SignalGuard {
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP print one line on standard error, "farcull:
 /// interrupted: after DONE of WANTED WHAT; END", and then end the program. Signals that the caller
-/// of the program ignores (nohup) stay ignored. At most one in a process, inside one without
-/// counts.
+/// of the program ignores (nohup) stay ignored. One with counts may live inside one without; there
+/// are no others.
 class Interruptible {
  public:
   /// Without counts: "farcull: interrupted; no file was written", or how many were.
