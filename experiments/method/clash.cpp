@@ -143,7 +143,9 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
     } else {
       row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
     }
-    if (contact.dimension != 1) continue;
+    // Two triangles of one plane that meet in a segment may do so by diagonals of flat faces. Where
+    // it is an edge of a closed part, its triangle of another plane has the segment as well.
+    if (contact.dimension != 1 || contact.kind == ContactKind::coplanar) continue;
     const auto& [p, q] = contact.ends;
     ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
   }

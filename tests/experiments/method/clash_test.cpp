@@ -230,6 +230,42 @@ TEST(Clash, WhatIsInAChamberBesideAnInnerWallIsContained) {
   EXPECT_EQ(clashes(parts.scene, {}).count(contained), 1u);
 }
 
+/// The same triangles, but each two of a quadrilateral have the other diagonal.
+void turn_diagonals(Parts& parts, std::uint32_t first) {
+  for (std::uint32_t t = first; t < parts.scene.triangles.size(); t += 2) {
+    const auto [a, b, c] = parts.scene.triangles[t];
+    const std::uint32_t d = parts.scene.triangles[t + 1][2];
+    parts.scene.triangles[t] = {b, c, d};
+    parts.scene.triangles[t + 1] = {b, d, a};
+  }
+}
+
+// A diagonal of a flat face is no edge of the surface, also where both parts have it.
+TEST(Clash, CurveDoesNotDependOnDiagonalsOfFlatFaces) {
+  for (const bool first : {false, true}) {
+    for (const bool second : {false, true}) {
+      Parts wall;
+      wall.add_box("peg", {0, 0, 3}, {1, 1, 4});
+      if (first) turn_diagonals(wall, 0);
+      wall.add_box("wall", {-5, -5, 0}, {5, 5, 4});
+      if (second) turn_diagonals(wall, 12);
+      EXPECT_EQ(clashes(wall.scene, {}).rows.at(0).curve, 4) << first << second;
+      for (const double up : {0.0, 1.0}) {  // the twin: a bent face, whose diagonal is an edge
+        if (up > 0 && first != second) continue;  // then the two are different solids
+        Parts same;
+        for (const bool turned : {first, second}) {
+          same.add_box("box", {0, 0, 0}, {10, 10, 15});
+          same.scene.vertices.back().z() += up;
+          if (turned) turn_diagonals(same, same.scene.objects.back().first_triangle);
+        }
+        const double bent =
+            6 * 10 + 2 * std::sqrt(101) + 3 * 15 + 16 + std::sqrt(first ? 200 : 201);
+        EXPECT_NEAR(clashes(same.scene, {}).rows.at(0).curve, up > 0 ? bent : 140, 1e-12);
+      }
+    }
+  }
+}
+
 // The square of 1e-170 is no double.
 TEST(Clash, DepthsOfTinyPartsAreBounded) {
   for (const double unit : {1e-170, 0x1p-1074, 1e-300, 1e100}) {
