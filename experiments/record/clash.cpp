@@ -162,8 +162,11 @@ std::string tolerance_text(const ClashRecord& record, const ClashTable& table) {
 /// "2 new, 5 same, 1 gone".
 std::string compared_text(const ClashComparison& compared) {
   const auto same = static_cast<std::size_t>(std::ranges::count(compared.same, true));
-  return fmt::format("{} new, {} same, {} gone", grouped(compared.same.size() - same),
-                     grouped(same), grouped(compared.gone.size()));
+  return fmt::format("{} new, {} same, {} gone{}", grouped(compared.same.size() - same),
+                     grouped(same), grouped(compared.gone.size()),
+                     compared.unexamined > 0
+                         ? fmt::format(", {} not examined", grouped(compared.unexamined))
+                         : "");
 }
 
 /// Lines about likely faults of the input: copies of a part, and parts in different units.
@@ -268,7 +271,7 @@ std::string no_depth_words(const Scene& scene, const ClashRow& row) {
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name) {
   const auto fail = [&](const std::string& reason, long line) {
-    throw Error(name, reason, "name a file that farcull clash --csv wrote", line);
+    throw Error(name, reason, "name a file that farcull clash --csv wrote without --frames", line);
   };
   using Row = std::array<std::string, 3>;  // two names in order, the verdict
   const auto row_of = [](std::string a, std::string b, std::string verdict) {
@@ -287,6 +290,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
       fail(fmt::format("{} cells under {} names", cells.size(), lines[0].cells.size()),
+  if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
            lines[k].line);
     if (column.contains("compared") && cells[column["compared"]] == "gone") continue;
     old.insert(row_of(cells[column["name_a"]], cells[column["name_b"]], cells[column["verdict"]]));
@@ -297,7 +301,25 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                         name_of(scene, row.objects.b), to_string(row.verdict))) >
                        0);
   }
-  for (const auto& [a, b, verdict] : old) out.gone.push_back({a, b, verdict});
+  std::map<std::string, std::uint32_t> numbers;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) numbers[scene.objects[o].name] = o;
+  // Pairs that were not examined, and near ones that are ignored, have no rows.
+  const auto left_out = [&](const std::string& name_a, const std::string& name_b, bool near) {
+    if (!numbers.contains(name_a) || !numbers.contains(name_b)) return false;
+    const auto [a, b] = std::minmax({numbers[name_a], numbers[name_b]});
+    const auto has = [&](const auto& pairs) {
+      return std::ranges::binary_search(pairs, ObjectPair{a, b});
+    };
+    return (record.options.only && !has(*record.options.only)) ||
+           (near && has(record.options.ignored)) || scene.objects[a].triangle_count == 0 ||
+           scene.objects[b].triangle_count == 0;
+  };
+  for (const auto& [a, b, verdict] : old) {
+    if (left_out(a, b, verdict == to_string(ClashVerdict::near)))
+      ++out.unexamined;
+    else
+      out.gone.push_back({a, b, verdict});
+  }
   return out;
 }
 
@@ -399,6 +421,7 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const ClashTable&
           {"time_ms", {{"total", record.ms}}},
           {"commit", FARCULL_COMMIT}};
 }
+          {"gone_unexamined", table.compared ? table.compared->unexamined : 0},
 
 ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& record,
                                      const ClashTable& table, long frame) {

@@ -177,8 +177,9 @@ struct ClashComparison {
   struct Gone {
     std::string a, b, verdict;
   };
-  std::vector<bool> same;  // per row of the record: whether the file has it
-  std::vector<Gone> gone;  // rows of the file that the record does not have
+  std::vector<bool> same;        // per row of the record: whether the file has it
+  std::vector<Gone> gone;        // rows of the file that the record does not have
+  std::uint64_t unexamined = 0;  // such rows of pairs that were left out, so they are not gone
 };
 /// text: the CSV; name: of the file, for errors. Throws Error if clash_csv() wrote no such text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,

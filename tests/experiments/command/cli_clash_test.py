@@ -167,11 +167,19 @@ $ mv changed/b.obj changed/c2.obj
 1 in the other order | clash parts/b.obj parts/a.obj --compare before.csv | ^compared   0 new, 1 same, 1 gone$
 $ cp parts/a.obj copy.obj
 1 a part twice | clash parts/a.obj copy.obj parts/c.obj | ^hint       a and copy may be one part twice
+$ cp -r parts apart && sed 's/^v 6 /v 6.5 /' parts/d.obj > apart/d.obj
 1 no copies | clash parts | ! ^hint
 $ sed 's/^v \(\S*\) \(\S*\) \(\S*\)/v \1e3 \2e3 \3e3/' parts/b.obj >mm.obj
 0 units | clash parts/a.obj mm.obj --fail-on none | ^hint       mm is .* times the size of a: are all parts in one unit.$
 $ cp parts/a.obj a,1.obj && cp parts/b.obj b:2.obj
 0 commas and colons in names | clash a,1.obj b:2.obj parts/c.obj --ignore 'a\,1:b\:2' | ^clash .ignored. +a,1 +b:2[ ]
+0 what --only leaves out is not gone | clash parts --only c:d --compare before.csv --json only.json | ^compared   0 new, 1 same, 0 gone, 1 not examined$ | ! ^gone
+  | @only.json "gone": .., | @only.json "gone_unexamined": 1
+0 what --only names is gone | clash apart --only c:d --compare before.csv --fail-on touch | ^compared   0 new, 0 same, 1 gone, 1 not examined$ | ^gone touch +c +d
+1 near before | clash parts --clearance 2 --csv near.csv
+1 what is near and ignored is not gone | clash parts --clearance 2 --ignore b:c --compare near.csv | ^compared   0 new, [0-9]* same, 0 gone, 1 not examined$
+1 what is no longer near is gone | clash parts --clearance 1 --compare near.csv | ^compared   0 new, [0-9]* same, [1-9] gone$
+bad compared with a table of frames | frames.csv:1: has a column frame.*--csv wrote without --frames | clash parts --compare frames.csv
 bad a comma | --ignore: 'a' has no colon between two names; .* write . before a comma | clash a,1.obj b:2.obj --ignore a,1:b:2
 1 an open part | clash open.obj parts/b.obj --depth --csv open.csv | ~ nodepth:openisnotclosed | @open.csv ,open is not closed,
 """)
