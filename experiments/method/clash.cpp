@@ -267,7 +267,7 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
   if (tolerance == 0) return;
   if (!row.depth || row.depth->hi > tolerance) {
     const std::vector<Vec3> ways = ways_apart(scene, pairs);
-    const Penetration found =
+    Penetration found =
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
     if (found.hi > tolerance) {
       // A point of one surface this far inside the other object stays inside after every
@@ -284,11 +284,14 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
       };
       constexpr std::size_t kMost = 1000;  // pairs that are looked at
       const auto some = pairs.first(std::min(pairs.size(), kMost));
-      row.shallow = !is_deep(row.witness[0]) && std::ranges::none_of(some, [&](const auto& pair) {
-        return has_deep(pair.a) || has_deep(pair.b);
-      });
-      if (row.shallow && !row.depth && std::isfinite(found.hi)) row.depth = found;
-      return;
+      if (found.lo > tolerance || is_deep(row.witness[0]) ||
+          std::ranges::any_of(some, [&](const auto& p) { return has_deep(p.a) || has_deep(p.b); }))
+        return;
+      // With a limit the search may have ended before it had a lower bound.
+      found = row.depth ? *row.depth : penetration(a, b, starts, options.threads);
+      row.shallow = found.lo <= tolerance && found.hi > tolerance;
+      if (row.shallow && std::isfinite(found.hi)) row.depth = found;
+      if (found.hi > tolerance) return;
     }
     row.depth = {.lo = row.depth ? row.depth->lo : found.lo,
                  .hi = found.hi,

@@ -52,7 +52,7 @@ struct ClashRow {
   ClashVerdict exact = ClashVerdict::clear;  // the verdict with a tolerance of 0
   bool ignored = false;
   bool proved = true;    // false: a touch was not proved to be one, so it counts as a clash
-  bool shallow = false;  // true: the depth is not proved to be within the tolerance, and no point
+  bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no point
                          // was found that is deeper, as of a part that is tight in a slot
   std::uint64_t pairs = 0;                                     // of triangles that meet
   std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // how many of these, by kind

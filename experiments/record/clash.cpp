@@ -88,7 +88,7 @@ const char* compared_word(const ClashTable& table, std::size_t row) {
 std::string depth_text(const ClashRow& row) {
   if (!row.depth) return "";
   const std::string low = short_number(row.depth->lo), high = short_number(row.depth->hi);
-  return low == high ? high : low + " to " + high;
+  return low == high ? high : (row.depth->lo > 0 ? low + " to " : "at most ") + high;
 }
 
 std::string distance_text(const ClashRow& row) {
@@ -130,10 +130,11 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
     if (++all <= kRowsShown) out.add({"gone " + verdict, a, b, "", "", "", "", ""});
   }
   if (all == 0) return "";
-  const bool deep = record.count(ClashVerdict::clash) + record.count(ClashVerdict::contained) > 0;
-  const std::string hint =
-      deep && !record.options.depth ? "depths are not asked for (--depth)\n" : "";
-  return "\n" + out.text() + more_line(all, kRowsShown) + hint;
+  const bool unasked = std::ranges::any_of(record.rows, [&](const ClashRow& row) {
+    return no_depth_words(scene, row) == "not asked for";
+  });
+  return "\n" + out.text() + more_line(all, kRowsShown) +
+         (unasked ? "depths are not asked for (--depth)\n" : "");
 }
 
 std::string heading(const Scene& scene) {

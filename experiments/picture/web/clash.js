@@ -15,7 +15,7 @@ function factsOf(row) {
   if (row.ignored) out.push("ignored");
   if (row.depth) {
     const [lo, hi] = row.depth.map(length);
-    out.push(lo === hi ? `depth ${lo}` : `depth ${lo} to ${hi}`);
+    out.push(lo === hi ? `depth ${lo}` : row.depth[0] > 0 ? `depth ${lo} to ${hi}` : `depth at most ${hi}`);
   }
   if (row.curve > 0) out.push(`curve ${length(row.curve)}`);
   if (row.distance !== null) out.push(`distance ${length(row.distance)}`);
