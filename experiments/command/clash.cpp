@@ -197,16 +197,12 @@ std::vector<ClashVerdict> ClashCommand::failing() const {
 }
 
 void ClashCommand::prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const {
-  const bool first = lacking == UnknownName::refused;
   if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
     scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
   for (Object& object : scene.objects) object.self = false;
   options.ignored = in_order(ignored_objects(scene, ignored_names(ignore_, ignore_file_), lacking),
                              scene.ignored);
   if (only_) options.only = ignored_objects(scene, parse_ignored(*only_, "--only"), lacking);
-  if (first && options.only && std::ranges::includes(options.ignored, *options.only))
-    throw Error("--only", "all of these pairs are ignored", "leave out --only or --ignore");
-  if (first) require_asked(scene, options.ignored, "SCENE", "");
   scene.ignored.clear();
 }
 

@@ -396,8 +396,7 @@ void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
                    const std::string& where, const std::string& otherwise) {
   const std::uint64_t pairs = objects * (objects - 1) / 2;
   if (objects < 2 || self || ignored < pairs) return;
-  throw Error(where,
-              "nothing to test: all " + counted(pairs, "pair", "pairs") + " of objects are ignored",
+  throw Error(where, "nothing to test: every pair of objects is ignored",
               otherwise.empty() ? "ignore fewer pairs" : "ignore fewer pairs, or " + otherwise);
 }
 

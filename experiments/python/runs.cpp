@@ -375,7 +375,6 @@ KeptClash clash_of(const KeptScene& kept, double clearance, const std::string& t
                          .threads = threads};
     for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
     options.ignored = in_order(std::move(options.ignored));
-    require_asked(*scene, options.ignored, "ignore", "");
     scene->ignored.clear();
     ClashRecord record = clashes(*scene, options, stopping_progress());
     return KeptClash{std::move(scene), std::move(record)};

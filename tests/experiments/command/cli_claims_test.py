@@ -68,7 +68,7 @@ bad nothing in a scene file | SCENE: .*: farcull verify one\.json --self$ | veri
   | ^verified: no colliding pair was culled, 1 pair accounted for$ | @something.json ^    "nothing_to_test": null,$
 one.json << {"objects": [{"mesh": "pierced.obj", "self": true}]}
 0 something in a scene file | verify one.json | ^verified:
-bad all ignored for {command} | SCENE: nothing to test: all 1 pair of objects are ignored; ignore fewer pairs | {command} pierced.obj good.obj --ignore pierced:good
+bad all ignored for {command} | SCENE: nothing to test: every pair of objects is ignored; ignore fewer pairs | {command} pierced.obj good.obj --ignore pierced:good
 0 bench with ignored objects | bench pierced.obj away.obj good.obj --ignore pierced:good --device cpu --repeat 1 --peers cgal-boxes --json - | "disagreement": null
 0 ignored, with self | run pierced.obj good.obj --ignore pierced:good --self | ^colliding +1 pair
 0 two objects | verify pierced.obj good.obj | ^verified:

@@ -38,7 +38,6 @@ bad fail on {word} | --fail-on: '{word}' is no verdict; give none, or some of | 
 bad ignored | --ignore: | clash parts --ignore a:none
 bad tolerance '{clearance}' | --tolerance: '.*' is no tolerance | clash parts --tolerance {clearance}
 bad only {only} | --only: | clash parts --only {only}
-bad only what is ignored | --only: all of these pairs are ignored | clash parts --only a:b --ignore a:*
 old.csv << name_a,verdict; a,clash
 bad compared with another table | old.csv:1: has no column name_b | clash parts --compare old.csv
 old.csv << name_a,name_b,verdict; a,clash
@@ -81,6 +80,8 @@ bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; f
 1 all digits | clash parts --csv - | #0 ^name_a,name_b,id,verdict,exact,ignored,proved,triangle_pairs, | #1 ^a,b,[0-9a-f]{8},clash,clash,0,1, | #1 ,not asked for, | #2 ^c,d,[0-9a-f]{8},touch,touch,
 1 a page | clash parts --html page.html | @page.html "verdict":"clash" | @page.html "what":"surfaces cross | @page.html "title":"parts"
 1 the title of a folder | clash parts | #0 ^parts: 4 parts,
+0 only what is ignored | clash parts --only a:b --ignore a:*,c:d | ^examined   0 of 0 pairs of parts: clean$ | ^clash .ignored. +a +b[ ]
+0 all pairs ignored | clash parts/a.obj parts/b.obj --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^clash .ignored. +a +b[ ]
 1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]
 1 columns fit letters of two bytes | clash cad --fail-on clash,contained,unknown,touch | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
 1 a part without triangles | clash parts/a.obj empty.off parts/c.obj | ^examined   1 of 3 pairs of parts$ | ^not examined: empty.off has no triangles$ | ! clean
