@@ -42,8 +42,8 @@ constexpr const char* kExamples =
     "  clash      the surfaces cross, the insides overlap, or the parts meet and it is not\n"
     "             proved that they touch only\n"
     "  contained  one part, or a piece of it, is inside the other\n"
-    "  unknown    would be contained, but the outer part is not closed, or not all of its\n"
-    "             faces face outward\n"
+    "  unknown    may be contained, but the outer part is not closed, or it is not certain\n"
+    "             what its faces enclose\n"
     "  touch      they meet, and it is proved that they do not overlap\n"
     "  near       they are at most the clearance apart\n"
     "  clear      none of these\n"
@@ -136,9 +136,11 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
               {"--csv", &outputs_.csv, "FILE",
                "write the pairs as CSV to this file; - for standard\noutput, without the table"},
               {"--compare", &compare_, "OLD.csv",
-               "say which pairs are new, the same or gone since this\nfile of --csv"},
+               "say which pairs are new, the same or gone since this\nfile of --csv; not with "
+               "--frames"},
               {"--json", &outputs_.json, "FILE", kJsonHelp},
-              {"--html", &outputs_.page, "FILE", "write a page to look at the pairs in a browser"}},
+              {"--html", &outputs_.page, "FILE",
+               "write a page to look at the pairs in a browser; not\nwith --frames"}},
       kExamples);
 }
 

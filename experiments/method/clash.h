@@ -23,7 +23,8 @@ namespace farcull {
 /// clash: their surfaces pass through each other, or their insides overlap; also if they touch and
 ///   it is not proved that they only touch (ClashRow::proved).
 /// contained: the surfaces do not meet, and all or a part of one object is inside the other.
-/// unknown: perhaps `contained`; the outer object is open, or its faces do not all face outward.
+/// unknown: perhaps `contained`; the outer object is open, or neither the winding number nor rays
+///   decide what is inside it (overlap_at() in verify/overlap.h).
 /// touch: they meet, and it is proved that their insides do not.
 /// near: they do not meet, and are at most the clearance apart.
 /// clear: none of these.

@@ -30,16 +30,20 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-/// How the surfaces meet, by the strongest contact: "faces lie on each other".
+/// How the surfaces meet, by the strongest contact: "faces lie on each other in 24 pairs ...".
 std::string contact_words(const ClashRow& row) {
   using enum ContactKind;
-  const auto any = [&](ContactKind kind) { return row.kinds[static_cast<std::size_t>(kind)] > 0; };
-  const std::string how = any(crossing)                 ? "surfaces cross"
-                          : any(coplanar) || any(equal) ? "faces lie on each other"
-                          : any(touch_face)             ? "an edge or a corner lies on a face"
-                          : any(touch_edge)             ? "edges meet"
-                                                        : "corners meet";
-  return how + " in " + counted(row.pairs, "pair of triangles", "pairs of triangles");
+  std::uint64_t n = 0;
+  const auto any = [&](auto... kinds) {
+    return (n = (row.kinds[static_cast<std::size_t>(kinds)] + ...)) > 0;
+  };
+  const std::string how = any(crossing)          ? "surfaces cross"
+                          : any(coplanar, equal) ? "faces lie on each other"
+                          : any(touch_face)      ? "edges lie on faces"
+                          : any(touch_edge)      ? "edges meet"
+                          : any(touch_vertex)    ? "corners touch"
+                                                 : "";
+  return how + " in " + counted(n, "pair of triangles", "pairs of triangles");
 }
 
 /// An id for two parts by name. It does not depend on their order, on the file or on options.
@@ -247,7 +251,7 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
   if (row.verdict == ClashVerdict::contained) return name_of(scene, *row.inner) + " inside";
   if (row.verdict == ClashVerdict::unknown) {
     return "the one around " + name_of(scene, *row.inner) +
-           " is not closed, or its faces do not all face outward";
+           " is not closed, or it is not certain what its faces enclose";
   }
   if (row.within_tolerance()) {
     return "within the tolerance; exactly: " + to_string(row.exact) +
@@ -286,12 +290,12 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   for (const char* wanted : {"name_a", "name_b", "verdict"}) {
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
+  if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
   std::set<Row> old;
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
       fail(fmt::format("{} cells under {} names", cells.size(), lines[0].cells.size()),
-  if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
            lines[k].line);
     if (column.contains("compared") && cells[column["compared"]] == "gone") continue;
     old.insert(row_of(cells[column["name_a"]], cells[column["name_b"]], cells[column["verdict"]]));
@@ -417,12 +421,12 @@ Json clash_json(const Scene& scene, const ClashRecord& record, const ClashTable&
           {"sizes_differ", record.sizes ? pair_json(*record.sizes) : Json(nullptr)},
           {"pairs", rows},
           {"gone", gone},
+          {"gone_unexamined", table.compared ? table.compared->unexamined : 0},
           {"triangle_pairs", record.triangle_pairs},
           {"stages", stages_json(record.trace)},
           {"time_ms", {{"total", record.ms}}},
           {"commit", FARCULL_COMMIT}};
 }
-          {"gone_unexamined", table.compared ? table.compared->unexamined : 0},
 
 ClashFrames::Report ClashFrames::add(const Scene& scene, const ClashRecord& record,
                                      const ClashTable& table, long frame) {
