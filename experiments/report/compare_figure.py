@@ -15,10 +15,11 @@ except ImportError as missing:
 
 
 def named(row, rows):
-    """A row without its resolution; an offset or a radius is named where rows differ in it."""
-    parts = [row.method, *row.form.split(), *(getattr(row, of) for of in ("offset", "radius")
-                                              if rows[of][rows[of] != ""].nunique() > 1)]
-    return " ".join(part for part in parts if part)
+    """A row without its resolution; an offset or a radius is named where rows differ in it. A radius stands for far, so
+    that each has a colour of its own (draw.py)."""
+    offset, radius = (getattr(row, of) if rows[of][rows[of] != ""].nunique() > 1 else "" for of in ("offset", "radius"))
+    return " ".join(part for part in ("" if radius else row.method, row.form, offset and f"{offset} offset",
+                                       radius and f"radius {radius}") if part)
 
 
 def figure_of(rows):
@@ -28,19 +29,20 @@ def figure_of(rows):
         # The first point of a line bears its name.
         px = [f"{at} px" if at else "" for at in of.resolution]
         labels = [f"{name} {px[0]}".strip(), *px[1:]]
-        series.append(Series(name, list(of.ms), list(of.missed), emphasis=name.startswith("far"), x_low=list(of.least_ms),
+        series.append(Series(name, list(of.ms), list(of.missed), emphasis=of.iloc[0].method == "far", x_low=list(of.least_ms),
                              x_high=list(of.most_ms), labels=labels))
     first = rows.iloc[0]
-    colliding = first.colliding + first.neighbours + first.missed
+    colliding, risk = first.colliding + first.neighbours + first.missed, rows.at_risk.max()
+    at_risk = "" if risk != risk else f"; at risk, since far loses them with 0.9 of its radius: at most {risk:,.0f}"
     return Figure("error-time", f"{first.scene}: missed pairs against time", (
         f"{colliding:,.0f} pairs collide. Below and to the left is better. Time is that of culling and exact tests; bars go "
         f"from the least to the most of {first.runs} runs."), [
-            Panel(f"{first.scene}: {colliding:,.0f} pairs collide", log("cull + exact (ms)"), log("missed pairs", zero=True),
+            Panel(f"{first.scene}: {colliding:,.0f} pairs collide{at_risk}", log("cull + exact (ms)"), log("missed pairs", zero=True),
                   series)])
 
 
 def main(path, status):
-    rows = pd.read_csv(sys.stdin, dtype={"resolution": "Int64"}, keep_default_na=False, na_values={"missed": [""], "resolution": [""]})
+    rows = pd.read_csv(sys.stdin, dtype={"resolution": "Int64"}, keep_default_na=False, na_values={"missed": [""], "at_risk": [""], "resolution": [""]})
     rows["resolution"] = rows.resolution.fillna(0).astype(int)
     svg = draw.files_of(figure_of(rows))["svg"]
     half = f"{path}.part-{os.getpid()}"

@@ -264,7 +264,7 @@ class Drawer:
 
     def label(self, ax, panel):
         """Writes the labels beside their points, the longest first, each where it covers least: no other label, no point,
-        and nothing beyond the axes."""
+        and nothing beyond the axes. One that would cover any of these is left out, but not the first of a series."""
         scale = 72 / self.canvas.dpi
         inside = [at * scale for at in ax.bbox.extents]
         points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
@@ -284,14 +284,16 @@ class Drawer:
             outside = (box[2] - box[0]) * (box[3] - box[1]) - both(box, inside)
             return sum(both(box, other) for other in taken) + 10 * outside
 
-        for name, text, at, x, y in sorted(points, key=lambda point: -len(point[1])):
+        first = {next(filter(None, s.labels), "") for s in panel.series}
+        for name, text, at, x, y in sorted(points, key=lambda point: (point[1] not in first, -len(point[1]))):
             wide = text_width(text)
             places = [(x + dx, y + dy) for far in (5, 12, 20, 30, 42) for dx, dy in (
                 (-wide / 2, far), (-wide / 2, -far - 6), (far, -3), (-far - wide, -3), (far, far), (-far - wide, far),
                 (far, -far - 6), (-far - wide, -far - 6))]
             low, base = min(places, key=lambda at: covered((at[0], at[1] - 2, at[0] + wide, at[1] + 7)))
-            taken.append((low, base - 2, low + wide, base + 7))
-            if text:
+            box = (low, base - 2, low + wide, base + 7)
+            if text and (text in first or not covered(box)):
+                taken.append(box)
                 ax.annotate(text, at, (low - x, base - y), "data", "offset points", color=self.looks[name].colour,
                             fontsize=8, annotation_clip=False, in_layout=False)
 

@@ -75,5 +75,7 @@ if subprocess.run(['/usr/bin/python3', '-c', 'import pandas, matplotlib'], stder
     print('note: no figure, since /usr/bin/python3 lacks pandas or matplotlib')
 else:
     rows('0 a figure | compare two-spheres --methods far,cullide --resolutions 16,32 --repeat 1 --device native --figure f.svg'
-         ' | ^far +16 | @f.svg <title>two-spheres: missed pairs against time | @f.svg cullide 16 px | @f.svg ^ *</?svg')
+         ' | ^far +16 | @f.svg <title>two-spheres: missed pairs against time | @f.svg cullide 16 px | @f.svg ^ *</?svg | @f.svg far 16 px'
+         '\n0 radii in a figure | compare two-spheres --methods far --radius budget,0.5 --resolutions 16 --repeat 1 --device native'
+         ' --figure r.svg | @r.svg radius budget 16 px | @r.svg radius 0\\.5 16 px | @r.svg collide; at risk, .* radius: at most [0-9]')
     case('nothing beside the figure', not [name for name in os.listdir() if '.part-' in name], program)

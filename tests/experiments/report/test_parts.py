@@ -207,10 +207,14 @@ def test_labels_at_points():
     figure = Figure("f", "F", "c", [Panel("p", log("ms"), log("missed", zero=True), [near, Series("exact", [30], [9], labels=["exact"])])])
     drawer = draw.Drawer(figure)
     texts = drawer.canvas.axes[0].texts
-    assert not drawer.canvas.legends and [t.get_text() for t in texts] == ["far 128 px", "256 px", "512 px", "exact"]
+    assert not drawer.canvas.legends and [t.get_text() for t in texts] == ["far 128 px", "exact", "256 px", "512 px"]
     boxes = [t.get_window_extent() for t in texts]
     assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
     assert all(0 <= b.x0 and b.x1 <= drawer.canvas.bbox.x1 and 0 <= b.y0 for b in boxes)
+    near.x, near.y, near.labels = [1] * 30, [0] * 30, ["far 8 px", *["256 px"] * 29]
+    texts = draw.Drawer(figure).canvas.axes[0].texts  # on one point there is no room for all of them
+    assert 3 < len(texts) < 30 and {"far 8 px", "exact"} < {t.get_text() for t in texts}
+    assert not any(a.overlaps(b) for a, b in itertools.combinations([t.get_window_extent() for t in texts], 2))
     near.labels = []
     figure.panels[0].series.pop()
     assert draw.Drawer(figure).canvas.legends  # the twin: without labels there is a key
