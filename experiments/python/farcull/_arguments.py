@@ -195,7 +195,13 @@ def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str,
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
     owner._grouped = turn  # nothing is called before the next line: Python checks for signals after calls
-    found = compiled.find(*given)
+    try:
+        found = compiled.find(*given)
+    except InputError as error:
+        if grouped.labels is None or error.where != "object_starts":
+            raise
+        remedy = "give labels of two objects or more, or test the object against itself with self"
+        raise InputError("labels", error.reason, remedy) from None
     if owner._grouped is turn:
         owner._grouped = grouped
     return found

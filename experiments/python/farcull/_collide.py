@@ -66,13 +66,18 @@ class Result:
     report: Report
     # Vertices, grouped triangles and self of collide(), for show(); None where a page shows other pairs.
     _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
+    _neighbour_objects: Optional[NDArray[Any]] = field(default=None, repr=False)  # None: objects were not given
 
     def to_pandas(self) -> Any:
         """A DataFrame with a row for each pair, sorted: ``a``, ``b``, ``neighbours``, and where they were
-        asked for ``contact``, the kind, and the ends of the segment, ``x0`` to ``z1``."""
+        given ``object_a`` and ``object_b``, numbers or labels; and where they were asked for ``contact``,
+        the kind, and the ends of the segment, ``x0`` to ``z1``."""
         pairs = np.concatenate([self.pairs, self.neighbour_pairs])
         order = np.lexsort((pairs[:, 1], pairs[:, 0]))
         columns: Dict[str, Any] = {"a": pairs[order, 0], "b": pairs[order, 1], "neighbours": order >= len(self.pairs)}
+        if self._neighbour_objects is not None:
+            objects = np.concatenate([self.objects, self._neighbour_objects])[order]
+            columns.update(object_a=objects[:, 0], object_b=objects[:, 1])
         if self.kinds is not None and self.neighbour_kinds is not None:
             codes = np.concatenate([self.kinds, self.neighbour_kinds])
             columns["contact"] = np.array(KINDS)[codes[order]]
@@ -196,6 +201,8 @@ class Collider:
         ):
             found.update(zip(names, grouped.pairs(*(found[name] for name in names))))
         found["objects"] = grouped.objects(found["pairs"])
+        if len(grouped.starts):
+            found["_neighbour_objects"] = grouped.objects(found["neighbour_pairs"])
         return Result(**{**found, "report": Report(**found["report"])}, _input=shown)
 
 

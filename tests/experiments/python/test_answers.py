@@ -233,13 +233,19 @@ def test_the_table_of_pairs(monkeypatch):
             assert error_of(answer.to_pandas).where == "pandas"
     pytest.importorskip("pandas")
     table = result.to_pandas()
-    assert list(table.columns) == ["a", "b", "neighbours", "contact", "x0", "y0", "z0", "x1", "y1", "z1"]
+    assert list(table.columns) == ["a", "b", "neighbours", "object_a", "object_b", "contact", "x0", "y0", "z0", "x1", "y1", "z1"]
     assert table[["a", "b"]].to_numpy().tolist() == sorted([*result.pairs.tolist(), *result.neighbour_pairs.tolist()])
     of_neighbours = table[table.neighbours]
     assert np.array_equal(of_neighbours[["a", "b"]].to_numpy(), result.neighbour_pairs)
     assert of_neighbours.contact.tolist() == np.array(farcull.KINDS)[result.neighbour_kinds].tolist()
     assert np.array_equal(of_neighbours[["x1", "y1", "z1"]].to_numpy(), result.neighbour_segments[:, 1], equal_nan=True)
-    assert list(farcull.collide(V, F, OBJECTS).to_pandas().columns) == ["a", "b", "neighbours"]
+    ends = table[["a", "b"]].to_numpy()
+    assert np.array_equal(table[["object_a", "object_b"]].to_numpy(), np.searchsorted(OBJECTS, ends, side="right") - 1)
+    labels = np.repeat(["p", "q"], [40, len(F) - 40])[::-1]  # q comes first
+    named = farcull.collide(V, F, labels=labels, self=True).to_pandas()
+    assert named.neighbours.any() and not named.neighbours.all()
+    assert np.array_equal(named[["object_a", "object_b"]].to_numpy(), labels[named[["a", "b"]].to_numpy()])
+    assert list(farcull.collide(V, F, self=True).to_pandas().columns) == ["a", "b", "neighbours"]  # the twin: no objects
 
 
 # ---- clashes and pages

@@ -173,6 +173,9 @@ def test_labels_group_triangles_in_any_order():
     for wrong in (labels[1:], labels.astype(float), [labels], [[0], 1], None, np.ma.array(labels)):
         assert error_of(farcull.collide, V, F, labels=wrong).where in ("labels", "object_starts")
     assert error_of(farcull.collide, V, F, starts, labels=labels).where == "labels"
+    alone = error_of(farcull.collide, V, F, labels=["a"] * count)  # the twin, without labels, names object_starts
+    assert (alone.where, error_of(farcull.collide, V, F).where) == ("labels", "object_starts") and "labels" in alone.remedy
+    assert error_of(farcull.distances, V, F, labels=["a"] * count).where == "labels"
     assert error_of(farcull.collide, V, F, labels=labels, limit=3).where == "limit"
     for wrong in ([(3, 8)], [("3", "7")], [(3.0, "7")]):
         assert error_of(farcull.collide, V, F, labels=labels, ignore=wrong).where == "ignore"
