@@ -291,20 +291,23 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
   if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
-  std::set<Row> old;
+  std::set<Row> old, forgiven;  // forgiven: of old, those of pairs that were ignored then
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
       fail(fmt::format("{} cells under {} names", cells.size(), lines[0].cells.size()),
            lines[k].line);
     if (column.contains("compared") && cells[column["compared"]] == "gone") continue;
-    old.insert(row_of(cells[column["name_a"]], cells[column["name_b"]], cells[column["verdict"]]));
+    const Row row =
+        row_of(cells[column["name_a"]], cells[column["name_b"]], cells[column["verdict"]]);
+    old.insert(row);
+    if (column.contains("ignored") && cells[column["ignored"]] == "1") forgiven.insert(row);
   }
   ClashComparison out;
   for (const ClashRow& row : record.rows) {
-    out.same.push_back(old.erase(row_of(name_of(scene, row.objects.a),
-                                        name_of(scene, row.objects.b), to_string(row.verdict))) >
-                       0);
+    const Row key = row_of(name_of(scene, row.objects.a), name_of(scene, row.objects.b),
+                           to_string(row.verdict));
+    out.same.push_back(old.erase(key) > 0 && (row.ignored || !forgiven.contains(key)));
   }
   std::map<std::string, std::uint32_t> numbers;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) numbers[scene.objects[o].name] = o;

@@ -89,6 +89,9 @@ bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; f
 1 folders in a folder | clash cad | ^examined   6 of 6 pairs | ^clash +left/Gehäuse  right/Gehäuse[ ]
 1 columns fit letters of two bytes | clash cad --fail-on clash,contained,unknown,touch | ^clash    left/Gehäuse  right/Gehäuse[ ] | ^touch    100% c;3      bolt[ ]
 1 a part without triangles | clash parts/a.obj empty.off parts/c.obj | ^examined   1 of 3 pairs of parts$ | ^not examined: empty.off has no triangles$ | ! clean
+0 a baseline in which a pair is ignored | clash parts --ignore a:b --csv ignored.csv
+1 a pair that is ignored no more is new | clash parts --compare ignored.csv --fail-on new | ^new clash +a +b
+0 a pair that is ignored still | clash parts --ignore a:b --compare ignored.csv --fail-on new | ^same clash .ignored. +a +b
 1 turned faces around a part, where rays decide | clash turned.obj inner.obj | ^contained +turned +inner
 1 an open part around a part, where there is no inside | clash open.obj inner.obj | ~ unknownopeninner.*isnotclosed,oritisnotcertainwhatitsfacesenclose
 1 JSON | clash parts --depth --json - --unit mm | "clean": false | "unit": "mm" | "verdict": "clash" | "least": 0.99999
