@@ -110,6 +110,27 @@ Scene checked_scene(const CheckArguments& arguments) {
   return scene;
 }
 
+// The end of a reason: the meshes in the order whose hash a certificate names, or nothing if none
+// has it. Up to four meshes, which have 24 orders.
+std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
+                     const std::string& hash) {
+  const std::size_t count = meshes.size();
+  if (count > 4 || count != scene.objects.size() || scene_hash(scene) == hash) return "";
+  Scene other = scene;
+  for (std::size_t o = 0; o < count; ++o) other.objects[o].name = meshes[o];
+  while (std::ranges::next_permutation(other.objects, {}, &Object::first_triangle).found) {
+    other.triangles.clear();
+    std::string names;
+    for (const Object& object : other.objects) {
+      const auto first = scene.triangles.begin() + object.first_triangle;
+      other.triangles.insert(other.triangles.end(), first, first + object.triangle_count);
+      names += " " + object.name;
+    }
+    if (scene_hash(other) == hash) return "; the meshes are in another order: give" + names;
+  }
+  return "";
+}
+
 // Certificates are read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
@@ -125,11 +146,12 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
   }
   const Scene scene = checked_scene(arguments);
-  return write_check(arguments, scene,
-                     check_scene_with(clearance_of(arguments, certificate),
-                                      clean_name(arguments.certificate), certificate, scene, list,
-                                      list ? std::span<const ListedPair>(list->rows)
-                                           : std::span<const ListedPair>()));
+  SceneCheck done = check_scene_with(
+      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
+      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+  if (certificate && done.result.verdict == Verdict::not_proved)
+    done.result.reason += order_of(arguments.scene.names, scene, certificate->scene.hash);
+  return write_check(arguments, scene, done);
 }
 
 // The output of the checks of frames: a row of the table and an element of the record for each,

@@ -68,6 +68,11 @@ blade.obj << v 0.1 0.6 -1; v 0.1 0.6 1; v 0.1 0.7 0; v 2.1 0.6 -1; v 2.1 0.6 1; 
 0 certificate of self-collision | run folded.obj --method boxes --self --certificate c.json
 0 check of it | check c.json folded.obj --self | ^proved:
 1 check of it without --self | check c.json folded.obj | ^not proved: the certificate is of another scene
+# Meshes in another order are named in that of the certificate. The twin: another mesh.
+0 of three | run faces.obj blade.obj folded.obj --method boxes --certificate o.json
+1 in another order | check o.json folded.obj faces.obj blade.obj | are in another order: give faces\.obj blade\.obj$
+  | ^folded\.obj$
+1 of another mesh | check o.json folded.obj faces.obj folded.obj | ^not proved: .* another scene | ! another order
 0 scene that collides with itself | verify self.json --method boxes
 0 compare with self | compare folded.obj --self --clearance 0.5 | ^boxes +-[ ] | ^method .* colliding \+ neighbours[ ]
 # Frames: a triangle that falls through another. frames_test.cpp has the answers.
