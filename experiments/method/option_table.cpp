@@ -159,7 +159,8 @@ const Option kOptions[] = {
      .take = take_radius,
      .kind = "radius",
      .remedy =
-         "give budget, published, or a factor of 0 to 100000 on the budget radius, such as 0.9",
+         "give budget, published, or a factor of 0 to 100000 on the budget radius, such as 0.9; "
+         "farcull compare takes several",
      .value = [](Run o) { return value_if(fattens(o.method), radius_text(o.radius)); },
      .of_drawing = true,
      .words = {"budget", "published"}},

@@ -31,6 +31,7 @@ def stages(run):
 rows(r"""
 each --radius: .*small.* | compare two-spheres --methods far | --radius small | --radius budget,small
 bad radii of what has none | --radius: .*methods | compare two-spheres --methods boxes,exact --radius 0.9
+bad radii outside compare | --radius: 'budget,0\.9' is no .*; farcull compare takes several | verify two-spheres --method far --radius budget,0.9
 bad a figure that is no SVG | --figure: .*\.svg | compare {far} --figure f.png
 bad a figure on standard output | --figure: | compare {far} --figure -
 bad figure and table in one place | --figure: | compare {far} --figure f.svg --csv f.svg
