@@ -89,7 +89,11 @@ std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> known;
   for (const Object& object : scene.objects) known.push_back(object.name);
-  std::string out = did_you_mean(likely_word(std::string(unknown), known)) + "the scene has ";
+  std::string meant = likely_word(std::string(unknown), known);
+  for (const std::string& name : known) {
+    if (!unknown.empty() && name.ends_with("/" + std::string(unknown))) meant = name;
+  }
+  std::string out = did_you_mean(meant) + "the scene has ";
   for (std::size_t o = 0; o < std::min(kShown, scene.objects.size()); ++o)
     out += (o > 0 ? ", " : "") + scene.objects[o].name;
   return out + (scene.objects.size() > kShown ? ", ..." : "");

@@ -466,9 +466,19 @@ void require_known(const std::string& name) {
     return;
   }
   std::error_code error;
-  if (name.find('%') != std::string::npos || std::filesystem::exists(name, error)) return;
+  const std::filesystem::path path = name, folder = path.parent_path();
+  if (name.find('%') != std::string::npos || std::filesystem::exists(path, error)) return;
+  std::vector<std::string> files;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::string file = entry.path().filename().string();
+    if (has_mesh_extension(file) || is_scene_file(file)) files.push_back(file);
+  }
+  std::ranges::sort(files);
+  const std::string file = likely_word(path.filename().string(), files);
   throw Error(name, "no built-in scene has this name, and there is no such file",
-              likely_name(name) + "farcull scenes lists the built-in scenes");
+              (file.empty() ? likely_name(name) : did_you_mean((folder / file).string())) +
+                  "farcull scenes lists the built-in scenes");
 }
 
 }  // namespace farcull

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/base/text.h"
+#include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
 namespace {
@@ -128,6 +130,8 @@ Placement::Rotation SceneValues::rotation(const json& rotate, const std::string&
                                 .angle = number(rotate["angle"], at + ".angle")};
   require((out.axis.array() != 0).any(), at + ".axis", "is the zero vector",
           "give a direction of any length");
+  if (std::abs(out.angle) > 2 * std::numbers::pi)
+    add_reading_notes(path, {fmt::format("{}: {} rad: angles are in radians", at, out.angle)});
   return out;
 }
 

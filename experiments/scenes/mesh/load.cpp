@@ -177,6 +177,8 @@ ReadingNotes& reading_notes() {
   return made;
 }
 
+}  // namespace
+
 void add_reading_notes(const std::string& path, const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 100;
   ReadingNotes& all = reading_notes();
@@ -185,8 +187,6 @@ void add_reading_notes(const std::string& path, const std::vector<std::string>& 
     if (all.notes.size() < kMost) all.notes.push_back(path + ": " + note);
   }
 }
-
-}  // namespace
 
 std::vector<std::string> take_reading_notes() {
   ReadingNotes& all = reading_notes();

@@ -56,6 +56,8 @@ std::optional<Error> foreign_mesh(const std::string& path);
 /// What load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that are not
 /// finite and that no face uses are passed over"; at most the first 100 sentences. Thread-safe.
 std::vector<std::string> take_reading_notes();
+/// Adds sentences about the file `path`.
+void add_reading_notes(const std::string& path, const std::vector<std::string>& notes);
 
 /// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place, as triangulate()
 /// (below) says: a planar simple polygon keeps its area exactly, convex or not; a folded polygon

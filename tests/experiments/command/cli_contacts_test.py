@@ -14,6 +14,8 @@ bad limit '{limit}' | --limit: .*1 or more | run {all} --limit {limit}
 bad an unknown name | --ignore: 'floor:wing' names 'wing', and no object is called so; .* of a name; the scene has floor, fin
   | run {all} --ignore floor:wing
 bad a misspelt name | --only: 'flor:fin' names 'flor', .*; did you mean floor\? the scene has floor, fin | run {all} --only flor:fin
+$ mkdir -p one two && cp fin.obj one/floor.obj && cp fin.obj two/floor.obj
+bad a name without its folder | --ignore: 'floor:fin' names 'floor', .*; did you mean two/floor\? | run one/floor.obj two/floor.obj fin.obj --ignore floor:fin
 wrong.txt << floor:fin; ; floor:wing
 bad a wrong line | wrong\.txt:3: 'floor:wing' names 'wing' | run {all} --ignore-file wrong.txt
 bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {all} {*part} --certificate c.json

@@ -45,6 +45,10 @@ bad an option as a name | --weld=1: | run edge.obj -- --weld=1
   | ^ +coincide; --weld 1e-[01][0-9][*]size closes it$
 0 no hint | run cad.obj --self --weld 1e-9 | @err merged | ! ^hint | ^colliding +0 pairs
 bad a name | two-sphere: no built-in scene has this name, and there is no such file; did you mean two-spheres\? | run two-sphere
+$ mkdir near && touch near/house.obj near/other.obj near/hose.oc
+bad a name of a file | near/hose\.ob: .*no such file; did you mean near/house\.obj\? | run near/hose.ob
+bad a name like none | near/x\.ob: .*no such file; correct the name; | run near/x.ob
+$ rm -r near
 bad a name for clash | nonexist: no built-in scene has this name, and there is no such file; .*farcull scenes | clash nonexist
 $ touch plain
 bad a file of no kind | plain: neither .* nor a file that ends in | run plain
@@ -57,6 +61,9 @@ $ "$farcull" run - --format off --self </dev/null 2>err >out; [[ $? = 2 ]] && gr
 # What readers pass over.
 notes.obj << v 0 0 0; v 1 0 0; v 0 1 0; v nan 0 0; t 3; f 1 2 3
 0 notes | run notes.obj part.obj | @err notes\.obj: 1 vertex that is not finite | @err 'obj: 1 statement that OBJ does not have
+turned.json << {"objects": [{"mesh": "house.obj", "rotate": {"axis": [0, 0, 1], "angle": 90}}, {"mesh": "part.obj"}]}
+0 degrees | run turned.json | @err ^farcull: turned\.json: objects\[0\]\.rotate: 90 rad: angles are in radians$
+$ sed 's/90/-6.28/' turned.json >once.json && "$farcull" run once.json 2>&1 >out | { ! grep -q radians; }
 # A part inside another is no collision of surfaces.
 0 nested | run house.obj part.obj | ^colliding +0 pairs | ^nested +1 object may lie wholly inside a closed one, as part in house\.
   | farcull distance says what lies inside
