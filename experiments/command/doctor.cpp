@@ -330,6 +330,9 @@ int DoctorCommand::run() const {
             "everything runs on the cores of the CPU\n\n");
     return doctor_without_gl(arguments, look_at_native());
   }
+  if (arguments.device == "hardware" &&
+      std::ranges::count(devices, arguments.device, &GlDevice::kind) == 0)
+    throw Error("--device", "no GPU was found", "give software or native");
   // The context throws an Error if nothing fits.
   const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
   const NativeFindings native = look_at_native();

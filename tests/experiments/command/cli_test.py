@@ -45,6 +45,8 @@ bad a suite into a folder with files | \.: is there already | suite .
 each {0}: | suite new | --size large | --seed one | --ask cat --seed 2
 each {0}: | run | crowd:1 | crowd:400:nan | crowd:400:0.2:1 | crowd::1 | field:1e6 | two-tori:5 | shells:10:1
 each {0}: | doctor | extra | --device nope | --device 99
+# Without a GPU, the devices that there are.
+$ "$farcull" doctor --device hardware >"$out" 2>"$err"; (($? < 2)) || grep -q 'no GPU was found; give software or native$\|EGL: \(lib\|dev\)' "$err"
 bad help of nothing known | nope: no such .*terms | help nope
 bad help of two topics | terms pairs: no such[ ] | help terms pairs
 # Without arguments, and before the help: what to do first.
