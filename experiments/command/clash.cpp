@@ -238,7 +238,8 @@ int ClashCommand::run_frames(const SceneArguments& files, FrameRange range, cons
   };
   try {
     for_each_frame(
-        range, json || csv ? "what they gave is written" : "no file was asked for with their pairs",
+        range,
+        json || csv ? "what they gave is written" : "their pairs are in no file (--csv FILE)",
         progress, "", [&](long frame, const Progress& named) {
           Scene scene = source.at(frame);
           const bool first = frame == range.first;

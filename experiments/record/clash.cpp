@@ -333,7 +333,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
 
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing) {
   const auto none = [&](ClashVerdict verdict) { return record.count(verdict) == 0; };
-  return record.examined == record.asked && none(ClashVerdict::clash) &&
+  return record.asked > 0 && record.examined == record.asked && none(ClashVerdict::clash) &&
          none(ClashVerdict::contained) && none(ClashVerdict::unknown) &&
          std::ranges::all_of(failing, none);
 }

@@ -108,7 +108,7 @@ def scene(rng, spoil):
     require(answer["asked"] == answer["examined"] == count * (count - 1) // 2 - len(ignored), "asked", answer)
     require(answer["ignored"] == len(ignored) and answer["ignored_meet"] == sum(ignores), "ignored", answer)
     serious = [r for r in rows if not r["ignored"] and r["verdict"] in ("clash", "contained", "unknown")]
-    require(answer["clean"] == (not serious), "clean", answer)
+    require(answer["clean"] == (not serious and answer["asked"] > 0), "clean", answer)
     for verdict, number in answer["verdicts"].items():
         found = sum(r["verdict"] == verdict and not r["ignored"] for r in rows)
         require(number == found or verdict == "clear" and number == answer["asked"] - sum(not i for i in ignores), "verdicts", answer)

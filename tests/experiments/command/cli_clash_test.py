@@ -80,7 +80,7 @@ bad a link to a folder | cad/more: is neither a file nor a folder, or a link to 
 $ rm cad/more
 bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; farcull clash takes | run parts
 0 clean | clash parts/a.obj parts/c.obj | ^examined   1 of 1 pair of parts: clean$
-0 only what is ignored | clash parts --only a:b --ignore a:*,c:d | ^examined   0 of 0 pairs of parts: clean$ | ^clash .ignored. +a +b[ ]
+0 only what is ignored | clash parts --only a:b --ignore a:*,c:d | ^examined   0 of 0 pairs of parts$ | ^clash .ignored. +a +b[ ]
 0 all pairs ignored | clash parts/a.obj parts/b.obj --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^clash .ignored. +a +b[ ]
 0 ignored | clash parts --ignore a:b | ^ignored    1 pair, of which 1 meets$ | ^clash .ignored. +a +b[ ] | ^examined   5 of 5 .*: clean$
 1 all digits | clash parts --csv - | #0 ^name_a,name_b,id,verdict,exact,ignored,proved,triangle_pairs, | #1 ^a,b,[0-9a-f]{8},clash,clash,0,1, | #1 ,not asked for, | #2 ^c,d,[0-9a-f]{8},touch,touch,
