@@ -173,6 +173,20 @@ def drivers():
     return [] if tables(made) and re.search(r'llvmpipe', made) else ['no table of llvmpipe']
 
 
+def misses():
+    """The command writes the page and its data, which have to stay as they are."""
+    paths = [f'{ROOT}/docs/results/misses.{kind}' for kind in ('md', 'csv')]
+    texts = [[open(path, encoding='utf-8').read() for path in paths]]
+    try:
+        call(sys.executable, 'experiments/misses.py', FARCULL)
+        texts.append([open(path, encoding='utf-8').read() for path in paths])
+    finally:
+        for path, text in zip(paths, texts[0]):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(text)
+    return [] if texts[0] == texts[1] else ['its table or its data']
+
+
 def mutants():
     call('bash', 'tests/mutants.sh', '--check')
     return []
@@ -185,6 +199,7 @@ PAGES = {'headline': (headline, METHODS), 'studies': (studies, [*METHODS, 'exper
          'bench-distances': (bench_distances, ['core/proximity', 'core/boxes', 'verify', 'experiments/peers']),
          'cloth-solver': (cloth_solver, [*METHODS, 'experiments/scenes/cloth']),
          'distances': (distances, ['core/proximity', 'core/boxes', 'verify']), 'tiles': (tiles, ['core/boxes', 'experiments/tiles']),
+         'misses': (misses, METHODS),
          'drivers': (drivers, ['core/gl', 'core/view', 'experiments/method']), 'mutants': (mutants, ['tests/mutants'])}
 
 

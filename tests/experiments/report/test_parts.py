@@ -180,7 +180,6 @@ def test_what_is_broken_comes_first():
     assert "Broken." not in pages.page_html(good)
 
 
-# Labels stand in place of a key: beside their points, apart from each other, and inside the figure.
 def crossed(canvas, x, y):
     """The texts in the plot that the line through these points crosses, and those that leave the frame."""
     ax, out = canvas.axes[0], []
@@ -202,6 +201,7 @@ def test_labels_beside_lines():
     assert crossed(draw.Drawer(figure).canvas, x, y)
 
 
+# Labels stand in place of a key: beside their points, apart from each other, and inside the figure.
 def test_labels_at_points():
     near = Series("far", [1, 1.1, 1.2], [0, 0, 0], labels=["far 128 px", "256 px", "512 px"])
     figure = Figure("f", "F", "c", [Panel("p", log("ms"), log("missed", zero=True), [near, Series("exact", [30], [9], labels=["exact"])])])
