@@ -9,10 +9,9 @@ Arrays to colliding pairs in three lines::
 ``V`` is an array of shape (n, 3), the vertices, in any type of number that a double holds exactly.
 ``F`` is an array of shape (m, 3), the triangles, as indices of vertices in any type of whole number.
 Triangles are closed sets, so touching counts. A degenerate triangle is the segment or the point that
-it is. Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends it. What
-is wrong raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and ``remedy``, and
-MemoryError where there is no memory; a file that is missing, :class:`MissingFileError`, which is a
-FileNotFoundError too. There is no answer then.
+it is. Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends it. A call
+that has no answer raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and
+``remedy``; :class:`MissingFileError`, which is a FileNotFoundError too; or MemoryError.
 """
 
 import errno as _errno
@@ -24,11 +23,8 @@ os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
 class Error(Exception):
-    """What farcull raises where it has no answer.
-
-    Attributes: ``where``, the parameter, file or step of a device; ``reason``, what is wrong there;
-    ``remedy``, what to do next.
-    """
+    """The exception of a call that has no answer. Attributes: ``where``, the parameter, file or step of a device;
+    ``reason``, what is wrong there; ``remedy``, what to do next."""
 
     def __init__(self, where: str, reason: str, remedy: str) -> None:
         super().__init__(where, reason, remedy)

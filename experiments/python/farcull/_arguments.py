@@ -11,7 +11,7 @@ from . import InputError
 
 
 def read(name: str, given: Any, remedy: str) -> np.ndarray:
-    """The argument as numpy reads it; through DLPack where it offers nothing else."""
+    """The argument as numpy reads it; through DLPack if it has no ``__array__``."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(name, "are a masked array", "give an array without a mask")
     if isinstance(given, np.ndarray):
@@ -30,8 +30,8 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
 
 
 def array(name: str, given: Any) -> np.ndarray:
-    """Vertices as contiguous doubles, or triangles as contiguous int64 or uint32; without a copy if they are so.
-    An empty list becomes (0, 3)."""
+    """Vertices ("V") as contiguous doubles, or triangles ("F") as contiguous int64 or uint32. They are copied only if
+    they are not so. An empty list becomes (0, 3)."""
     if hasattr(given, "faces") or hasattr(given, "cells"):
         raise InputError(name, "is a mesh", "give V, F and object_starts of farcull.join(mesh, ...)")
     out = read(name, given, "give rows of three numbers")
@@ -74,13 +74,11 @@ def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
             blocks = [(block.type, block.data) for block in given.cells]
         except AttributeError:
             raise InputError("meshes", "have cells without type and data", remedy) from None
-        # Lines and vertices are no surface; to pass over other cells would miss collisions.
+        # Lines and vertices are no surface. Other cells are refused, since leaving them out would miss collisions.
         others = {kind for kind, _ in blocks} - {"triangle", "line", "vertex"}
         if others:
-            raise InputError(
-                "meshes", "have cells of the type " + ", ".join(sorted(others)),
-                "give triangles alone, as in (mesh.points, mesh.cells_dict['triangle'])",
-            )
+            remedy = "give triangles alone, as in (mesh.points, mesh.cells_dict['triangle'])"
+            raise InputError("meshes", "have cells of the type " + ", ".join(sorted(others)), remedy)
         V = given.points
         found = [array("F", data) for kind, data in blocks if kind == "triangle"]
         F = np.concatenate(found) if found else []
@@ -103,11 +101,8 @@ class Grouped:
             raise InputError("labels", "are given beside object_starts", "give one of the two")
         each = read("labels", labels, "give one for each triangle")
         if each.ndim != 1 or len(each) != len(self.triangles) or each.dtype.kind not in "iubUS":
-            raise InputError(
-                "labels",
-                f"have the shape {each.shape} and the type {each.dtype} for {len(self.triangles)} triangles",
-                "give one whole number or text for each triangle",
-            )
+            reason = f"have the shape {each.shape} and the type {each.dtype} for {len(self.triangles)} triangles"
+            raise InputError("labels", reason, "give one whole number or text for each triangle")
         order = np.argsort(each, kind="stable")
         self.labels, first = np.unique(each[order], return_index=True)
         self.starts = np.ascontiguousarray(first, np.int64)
@@ -115,7 +110,8 @@ class Grouped:
             self.order, self.triangles = order, self.triangles[order]
 
     def pairs(self, pairs: np.ndarray, *others: Any) -> Tuple[Any, ...]:
-        """Pairs in the caller's numbers, rows sorted, and what belongs to each row, None for none."""
+        """The pairs in the caller's numbers, with sorted rows; and the others, arrays or None, in the order of the
+        rows."""
         if self.order is None:
             return (pairs, *others)
         named = np.sort(self.order[pairs], axis=1).reshape(-1, 2)
@@ -123,7 +119,7 @@ class Grouped:
         return (named[by], *(None if other is None else other[by] for other in others))
 
     def objects(self, pairs: np.ndarray) -> np.ndarray:
-        """The objects of triangles in the caller's numbers, by labels where there are some."""
+        """The objects of triangles, which have the caller's numbers; as labels if there are labels."""
         if self.order is not None:
             place = np.empty(len(self.order), np.int64)
             place[self.order] = np.arange(len(self.order))
@@ -132,22 +128,21 @@ class Grouped:
         return out if self.labels is None else self.labels[out]
 
     def ignored(self, given: Any) -> Any:
-        """Pairs of objects, by their labels where there are some, as pairs of numbers."""
+        """Pairs of objects, which are given by labels if there are labels, as pairs of numbers."""
         if self.labels is None or given is None:
             return given
         remedy = "give labels, as in [(3, 7)]"
         rows = read("ignore", given, remedy)
         if rows.size == 0:
             return None
-        # Compared by Python, since numpy rounds where one array is signed and the other is not.
+        # Python compares the labels, since numpy rounds if one array is signed and the other is not.
         places = {label: place for place, label in enumerate(self.labels.tolist())}
         try:
             if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iubUS":
                 raise KeyError
             return [[places[a], places[b]] for a, b in rows.tolist()]
         except KeyError:
-            reason = "are no rows of two labels that triangles have"
-            raise InputError("ignore", reason, remedy) from None
+            raise InputError("ignore", "are no rows of two labels that triangles have", remedy) from None
 
 
 def poses(given: Any) -> np.ndarray:
@@ -166,14 +161,15 @@ def poses(given: Any) -> np.ndarray:
     return np.ascontiguousarray(out[:, :3], np.float64)
 
 
-#: What the compiled module takes of a call: vertices, triangles, starts and poses.
+#: Vertices, triangles, starts and poses, as the compiled module takes them.
 Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def arrays(
     V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Union[Grouped, None, bool] = False
 ) -> Tuple[Grouped, Arrays]:
-    """The input of a call. ``before``: of the call whose arrays poses alone move; False: they are never alone."""
+    """The input of a call. ``before``: the grouped triangles of the call before, whose arrays move if poses are given
+    alone; None if there are none; False: poses cannot be given alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
     if alone and isinstance(before, Grouped) and len(matrices):
@@ -189,12 +185,13 @@ def arrays(
 
 
 def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
-    """The answer of a compiled collider or finder of ``owner``, which then knows the objects of the call.
-    If a signal handler asked it in between, it knows those of the handler's call, which was the last."""
+    """The answer of the compiled collider or finder of ``owner``. ``owner._grouped`` becomes ``grouped``, unless a
+    signal
+    handler called the owner meanwhile: then that call was the last one."""
     turn = object()
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
-    owner._grouped = turn  # nothing is called before the next line: Python checks for signals after calls
+    owner._grouped = turn  # Python checks for signals after calls, and the next line is the first call
     try:
         found = compiled.find(*given)
     except InputError as error:
@@ -213,11 +210,8 @@ def _starts(given: Any) -> np.ndarray:
         return np.zeros(0, np.int64)
     out = read("object_starts", given, "give whole numbers")
     if out.ndim != 1 or (out.dtype.kind not in "iu" and out.size):
-        raise InputError(
-            "object_starts",
-            "must be a one-dimensional array of whole numbers",
-            "give the number of the first triangle of each object",
-        )
+        remedy = "give the number of the first triangle of each object"
+        raise InputError("object_starts", "must be a one-dimensional array of whole numbers", remedy)
     if out.dtype == np.uint64 and out.size and int(out.max()) >= 2**63:
         raise InputError("object_starts", f"hold {out.max()}", "give numbers of triangles")
     return np.ascontiguousarray(out, dtype=np.int64)
@@ -277,22 +271,20 @@ def choice(name: str, given: Any, choices: Sequence[str]) -> str:
 
 
 def selves(given: Any) -> Tuple[bool, List[bool]]:
-    """Whether all objects are tested against themselves, and which."""
+    """Whether all objects are tested against themselves; or else a truth value for each."""
     if isinstance(given, (bool, np.bool_)):
         return bool(given), []
     try:
         each = list(given)
     except TypeError:
-        raise InputError(
-            "self", f"{given!r} is no truth value", "give True, False, or one for each object"
-        ) from None
+        remedy = "give True, False, or one for each object"
+        raise InputError("self", f"{given!r} is no truth value", remedy) from None
     return False, [flag("self", value) for value in each]
 
 
 def ignored(given: Any, scene: Any = None) -> List[List[int]]:
-    """Pairs of different objects, given by their numbers or, with a compiled scene, by patterns of
-    their names; None stands for no pair. Without a scene the library refuses numbers that no object
-    has."""
+    """Pairs of different objects, given by numbers or, with a compiled scene, by patterns of their names. Without a
+    scene the library refuses numbers that no object has."""
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
@@ -313,16 +305,13 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
         if not (0 <= min(a, b) and max(a, b) < objects):
             raise InputError("ignore", f"row {k} names objects {a} and {b}", remedy)
         if a == b:
-            raise InputError(
-                "ignore",
-                f"row {k} names object {a} twice",
-                "give two different objects; self says which are tested against themselves",
-            )
+            remedy = "give two different objects; self says which are tested against themselves"
+            raise InputError("ignore", f"row {k} names object {a} twice", remedy)
     return out
 
 
 def limit(given: Any) -> int:
-    """How many pairs at most; None, as 0 for the library, stands for all."""
+    """The limit as the library takes it: 0 for all pairs."""
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
 
 
@@ -337,7 +326,7 @@ def weld(given: Any, name: str = "weld") -> str:
 
 
 def texts(**options: Any) -> Dict[str, str]:
-    """Options as texts, a flag as an empty one. None and False are left out."""
+    """Options as texts; True becomes an empty text, None and False are left out."""
     out = {}
     for name, value in options.items():
         if value is None or value is False:
@@ -365,7 +354,7 @@ def _text_of(name: str, value: Any) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """As in "1 pair" and "2 pairs", for texts."""
+    """As in "1 pair" and "2 pairs"."""
     return f"{count} {noun}" + ("" if count == 1 else "s")
 
 

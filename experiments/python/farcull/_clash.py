@@ -29,8 +29,8 @@ class Clash:
 
     @property
     def rows(self) -> List[Dict[str, Any]]:
-        """The pairs of objects that are not clear, the most serious first: ``object_a``, ``object_b``, ``name_a``,
-        ``name_b``, ``verdict`` and the other keys of docs/clash.md."""
+        """The pairs of objects that are not clear, the most serious first, with the keys of docs/clash.md:
+        ``object_a``, ``object_b``, ``name_a``, ``name_b``, ``verdict`` and others."""
         return self._json["pairs"]
 
     @property
@@ -57,18 +57,18 @@ def clash(
     scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False,
     tolerance: Union[float, str] = 0.0,
 ) -> Clash:
-    """Which objects of a scene clash, touch, lie inside each other or are near, for every two of them.
+    """For every two objects of a scene: do they clash, touch or lie inside each other, or are they near?
 
     Parameters
     ----------
     scene: a :class:`Scene` of two objects or more.
     clearance: objects at this distance or less are near. World units, finite, 0 or more.
-    ignore: pairs of objects that may clash, as of :meth:`Scene.run`; they are listed apart.
+    ignore: pairs of objects that may clash, as in :meth:`Scene.run`; they are listed apart.
     threads: up to 1024; 0: one for each core.
-    depth: also how deep objects are in each other, as bounds. Takes longer than all else where objects have many
-        triangles.
-    tolerance: an overlap whose depth is proved to be at most this is a touch, and so is a gap of at most this. World
-        units, finite, 0 or more; or relative to the diagonal of the box around the scene, as in "1e-9*size".
+    depth: True: also give bounds for how deep objects are in each other. Takes long if objects have many triangles.
+    tolerance: an overlap whose depth is proved to be at most the tolerance is a touch, and so is a gap of at most the
+        tolerance. World units, finite, 0 or more; or relative to the diagonal of the box around the scene, as in
+        "1e-9*size".
 
     Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
     """
@@ -87,14 +87,14 @@ def show(
 ) -> str:
     """Writes a page on which the answer can be turned and explored, and opens it in the browser.
 
-    - ``what``: a :class:`Clash`: the objects of each pair, and where they cross. A :class:`Record`, a
-      :class:`Scene` or a :class:`Result` of :func:`collide`: the triangles that collide, and with a Record
-      those that its method missed.
+    - ``what``: a :class:`Clash`: the objects of each pair, and where they cross. A :class:`Record`, a :class:`Scene`
+      or a :class:`Result` of :func:`collide`: the triangles that collide, and with a Record those that its method
+      missed.
     - ``path``: of the page; None: a new temporary file, which stays.
-    - ``browse``: False: the page is written only.
+    - ``browse``: False: only writes the page.
 
-    Returns the path. The page of a Clash needs no OpenGL; the others do, for which Mesa's software device
-    will do. Raises InputError where no page shows the answer, and Error.
+    Returns the path. All pages but that of a Clash need OpenGL; Mesa's software device will do. Raises InputError if
+    no page can show the answer, and Error.
     """
     html = _html(what)
     if path is None:

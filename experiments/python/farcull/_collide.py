@@ -25,16 +25,16 @@ KINDS: Tuple[str, ...] = _farcull.kinds
 
 @dataclass(frozen=True)
 class Report:
-    """What ran, on what, why, and how long. For people and logs."""
+    """Which stages ran, with their reasons and times. For people and logs."""
 
     candidates_ms: float  # wall clock, from the input to the candidates
     exact_ms: float  # wall clock of the exact tests
     candidates: int  # without those of ignored objects
-    decided: int  # candidates that exact tests decided; fewer where the limit was reached before
-    neighbours: int  # of those decided, neighbours, colliding or not
+    decided: int  # candidates that exact tests decided; fewer if the limit was reached before
+    neighbours: int  # decided candidates that are neighbours, colliding or not
     contacts_ms: float  # wall clock of the kinds of contact
     passed_over: int  # vertices that are not finite and that no triangle uses
-    callers_arithmetic: str  # how the calling thread computes, where that is unusual; else empty
+    callers_arithmetic: str  # how the calling thread rounds and flushes, if that is unusual; else empty
     stages: List[Dict[str, Any]]
 
 
@@ -43,35 +43,33 @@ class Result:
     """The pairs that collide. Triangles are numbered from 0 in the order of the input."""
 
     pairs: NDArray[np.int64]
-    """(k, 2), in each row the lower number first, rows sorted, each once: of different objects, or of
-    one that is tested against itself and no neighbours."""
+    """(k, 2): rows sorted, in each the lower number first. Pairs of different objects, and pairs of an object that is
+    tested against itself unless they are neighbours."""
     objects: NDArray[Any]
-    """(k, 2): the objects of each of ``pairs``, as numbers from 0 or as labels. Neighbours are of one object."""
+    """(k, 2): the objects of each of ``pairs``, as numbers from 0 or as labels."""
     neighbour_pairs: NDArray[np.int64]
-    """The same of neighbours: triangles of one object that share a vertex position, and that meet in
+    """Pairs of neighbours, in the same form: triangles of one object that share a vertex position, and that meet in
     more than the shared positions and the edge between them."""
     kinds: Optional[NDArray[np.uint8]]
     """(k,): how each of ``pairs`` meets, as its place in :data:`KINDS`; None unless asked for."""
     neighbour_kinds: Optional[NDArray[np.uint8]]
-    """The same of ``neighbour_pairs``."""
+    """The same for ``neighbour_pairs``."""
     segments: Optional[NDArray[np.float64]]
-    """(k, 2, 3): the ends of the segment that each of ``pairs`` has in common, each coordinate rounded
-    once; twice the point where it is one, NaN where there is none or more, as between coplanar
-    triangles. None unless asked for."""
+    """(k, 2, 3): the ends of the segment that each of ``pairs`` has in common, each coordinate rounded once. A common
+    point is given twice; NaN stands for no point and for a polygon. None unless asked for."""
     neighbour_segments: Optional[NDArray[np.float64]]
-    """The same of ``neighbour_pairs``."""
+    """The same for ``neighbour_pairs``."""
     complete: bool
-    """False: there may be more pairs behind the last one, which the limit leaves out. Before it none is
-    missing."""
+    """False: the limit was reached, and more pairs may follow the last one. No pair before it is missing."""
     report: Report
-    # Vertices, grouped triangles and self of collide(), for show(); None where a page shows other pairs.
+    # Vertices, grouped triangles and self of collide(), for show(); None if a page would show other pairs.
     _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
     _neighbour_objects: Optional[NDArray[Any]] = field(default=None, repr=False)  # None: objects were not given
 
     def to_pandas(self) -> Any:
-        """A DataFrame with a row for each pair, sorted: ``a``, ``b``, ``neighbours``, and where they were
-        given ``object_a`` and ``object_b``, numbers or labels; and where they were asked for ``contact``,
-        the kind, and the ends of the segment, ``x0`` to ``z1``."""
+        """A DataFrame with a row for each pair, sorted: ``a``, ``b`` and ``neighbours``; ``object_a`` and
+        ``object_b`` if objects were given; ``contact``, the kind, and ``x0`` to ``z1``, the ends of the segment, if
+        they were asked for."""
         pairs = np.concatenate([self.pairs, self.neighbour_pairs])
         order = np.lexsort((pairs[:, 1], pairs[:, 0]))
         columns: Dict[str, Any] = {"a": pairs[order, 0], "b": pairs[order, 1], "neighbours": order >= len(self.pairs)}
@@ -110,38 +108,12 @@ def pandas() -> Any:
     return pandas
 
 
-def _question(
-    self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
-    contacts: bool, segments: bool, ignore: Optional[ArrayLike], limit: Optional[int],
-) -> Dict[str, Any]:
-    """What a collider is asked, checked."""
-    all_objects, each = _arguments.selves(self)
-    return {
-        "all_objects": all_objects,
-        "self_objects": each,
-        "clearance": _arguments.number("clearance", clearance),
-        "neighbours": _arguments.flag("neighbours", neighbours),
-        "threads": _arguments.threads(threads),
-        # The place in Contacts of C++: nothing, kinds, or kinds and segments.
-        "contacts": max(
-            _arguments.flag("contacts", contacts), 2 * _arguments.flag("segments", segments)
-        ),
-        "ignore": _arguments.ignored(ignore),
-        "limit": _arguments.limit(limit),
-    }
-
-
 class Collider:
-    """Finds colliding pairs again and again, as for the frames of an animation.
+    """Finds colliding pairs again and again, as for the frames of an animation, with the answers of :func:`collide`.
 
-    It keeps its memory from call to call. Where the triangles and objects are those of the call
-    before, it also keeps what it found about triangles that did not move. The answers are those of
-    :func:`collide`. One thread at a time may use it.
-
-    By name it takes ``self``, ``clearance``, ``neighbours``, ``contacts``, ``segments``, ``ignore`` (numbers
-    alone), ``limit`` and ``threads`` as :func:`collide` does.
-
-    Raises InputError naming the option that is wrong.
+    A collider keeps its memory from call to call, and its results about triangles that did not move if the triangles
+    and objects stay the same. One thread at a time may use it. It takes the options of :func:`collide` by name;
+    ``ignore`` has numbers alone. Raises InputError naming the option that is wrong.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -150,9 +122,18 @@ class Collider:
         neighbours: bool = True, threads: int = 0, contacts: bool = False,
         segments: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
     ) -> None:
-        question = _question(
-            self, clearance, neighbours, threads, contacts, segments, ignore, limit
-        )
+        all_objects, each = _arguments.selves(self)
+        question = {
+            "all_objects": all_objects,
+            "self_objects": each,
+            "clearance": _arguments.number("clearance", clearance),
+            "neighbours": _arguments.flag("neighbours", neighbours),
+            "threads": _arguments.threads(threads),
+            # A value of Contacts in C++: 0 nothing, 1 kinds, 2 kinds and segments.
+            "contacts": max(_arguments.flag("contacts", contacts), 2 * _arguments.flag("segments", segments)),
+            "ignore": _arguments.ignored(ignore),
+            "limit": _arguments.limit(limit),
+        }
         collider._grouped: Any = None  # of the call before, if it had an answer; else None
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(question)
@@ -162,24 +143,11 @@ class Collider:
         object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
         poses: Optional[ArrayLike] = None,
     ) -> Result:
-        """The pairs that collide.
+        """The pairs that collide. V, F, object_starts, labels and poses are the parameters of :func:`collide`.
 
-        Parameters
-        ----------
-        V: (n, 3), the vertices; finite where a triangle uses them.
-        F: (m, 3), the triangles, as indices of vertices from 0.
-        object_starts: the number of the first triangle of each object: 0, then rising. None: all
-            triangles are one object, which has to be tested against itself.
-        labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in
-            any order. The objects are numbered by their labels in ascending order.
-        poses: a matrix (4, 4) or (3, 4) for each object, which moves its vertices; no two objects
-            share a vertex then. Each product and sum of a coordinate is rounded, from left to right;
-            the answer is exact for the points that come out. ``find(poses=...)`` alone moves the
-            arrays of the call before, unless that raised an exception.
-
-        Raises InputError for arrays that are not so, where there is nothing to test, and where
-        ``ignore`` names an object that is not there; and MemoryError.
-        The collider can be used again after each, and after Ctrl-C.
+        ``find(poses=...)`` alone moves the arrays of the call before, unless that call itself raised an exception.
+        Raises InputError for arrays that are not so, if there is nothing to test, and if ``ignore`` names an object
+        that is not there; and MemoryError. The collider can be used again after each, and after Ctrl-C.
         """
         before, self._grouped = self._grouped, None
         grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, before)
@@ -195,10 +163,8 @@ class Collider:
         shown: Optional[Tuple[Any, Any, Any]] = None,
     ) -> Result:
         found = _arguments.ask(self, self._collider, grouped, given)
-        for names in (
-            ("pairs", "kinds", "segments"),
-            ("neighbour_pairs", "neighbour_kinds", "neighbour_segments"),
-        ):
+        for of in ("", "neighbour_"):
+            names = [of + "pairs", of + "kinds", of + "segments"]
             found.update(zip(names, grouped.pairs(*(found[name] for name in names))))
         found["objects"] = grouped.objects(found["pairs"])
         if len(grouped.starts):
@@ -214,34 +180,40 @@ def collide(
     labels: Optional[ArrayLike] = None, segments: bool = False,
     poses: Optional[ArrayLike] = None,
 ) -> Result:
-    """All pairs of triangles that collide: of different objects, and of one that is tested against
-    itself. For many frames, keep a :class:`Collider`.
+    """All pairs of triangles that collide: of different objects, and of objects that are tested against themselves.
+    For many frames, keep a :class:`Collider`.
 
     Parameters
     ----------
-    V: (n, 3), the vertices; finite where a triangle uses them.
+    V: (n, 3), the vertices; finite if a triangle uses them.
     F: (m, 3), the triangles, as indices of vertices from 0.
-    object_starts: the number of the first triangle of each object: 0, then rising. None: all triangles
-        are one object, which has to be tested against itself.
+    object_starts: the number of the first triangle of each object: 0, then rising. None: all triangles are one
+        object, which has to be tested against itself.
     self: True: every object is tested against itself as well; or one truth value for each object.
     clearance: pairs at this distance or less collide too. World units, finite, 0 or more.
     neighbours: False: neighbours are counted, not decided.
     threads: up to 1024; 0: one for each core.
-    contacts: True: say of each pair how the two triangles meet (:data:`KINDS`).
-    ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers
-        from 0; with ``labels`` by their labels.
-    limit: only the first so many pairs, neighbours among them, in the order of the rows; 1 or more.
-        None: all. Not with ``labels``.
-    labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any
-        order. The objects are numbered by their labels in ascending order.
-    segments: True: say of each pair how the two triangles meet, and the points that they have in common.
-    poses: a matrix for each object, which moves it, as in :meth:`Collider.find`.
+    contacts: True: also give for each pair how the two triangles meet (:data:`KINDS`).
+    ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers from 0; with
+        ``labels`` by their labels.
+    limit: how many pairs to find, neighbours among them, from the first row on; 1 or more. None: all. Not with
+        ``labels``.
+    labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any order. The
+        objects are numbered by their labels in ascending order.
+    segments: True: as ``contacts``, and also give the points that the two triangles have in common.
+    poses: a matrix (4, 4) or (3, 4) for each object, which moves its vertices; no two objects may then share a
+        vertex. Each product and sum of a coordinate is rounded, from left to right; the answer is exact for the
+        points that come out.
 
-    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for
-    arguments that are not so and where there is nothing to test; and MemoryError.
+    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for arguments that are
+    not so, and if there is nothing to test; and MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
-    _refuse_limit(limit, labels)
+    if limit is not None and labels is not None:
+        raise InputError(
+            "limit", "has no meaning with labels: rows are found in the order of the labels",
+            "sort the triangles by label and give object_starts",
+        )
     all_objects, each = _arguments.selves(self)
     selves = each or all_objects
     collider = Collider(
@@ -252,23 +224,15 @@ def collide(
     return collider._find(grouped, given, (given[0], grouped, selves) if usual else None)
 
 
-def _refuse_limit(limit: Optional[int], labels: Optional[ArrayLike]) -> None:
-    if limit is not None and labels is not None:
-        raise InputError(
-            "limit", "has no meaning with labels: rows are found in the order of the labels",
-            "sort the triangles by label and give object_starts",
-        )
-
-
 def join(
     *meshes: Any, weld: Union[None, float, str] = None
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Several meshes, or one, as V, F and object_starts: the arguments of :func:`collide`.
+    """Meshes as V, F and object_starts, the arguments of :func:`collide`.
 
-    A mesh is a pair (V, F); or an object with ``vertices`` and ``faces``, as of trimesh; or one with
-    ``points`` and ``cells``, as of meshio, whose cells are triangles (lines and vertices among them are
-    no surface, and are passed over). ``weld`` merges vertices of a mesh that nearly coincide, as
-    :class:`Scene` does. Raises InputError for anything else, and for a mesh without triangles.
+    A mesh is a pair (V, F); or an object with ``vertices`` and ``faces``, as of trimesh; or one with ``points`` and
+    ``cells``, as of meshio, whose cells are triangles (lines and vertices are passed over, since they are no
+    surface). ``weld`` merges vertices of a mesh that nearly coincide, as :class:`Scene` does. Raises InputError for
+    anything else, and for a mesh without triangles.
     """
     tolerance = _arguments.weld(weld)
     if not meshes:
@@ -281,9 +245,7 @@ def join(
         if not F.size:
             raise InputError("meshes", f"mesh {len(starts)} has no triangles", "leave it out")
         if not (0 <= F.min() and F.max() < len(V)):
-            raise InputError(
-                "F", "names a vertex that the mesh does not have", "correct the index"
-            )
+            raise InputError("F", "names a vertex that the mesh does not have", "correct the index")
         if tolerance:
             F = _farcull.weld(V, F, tolerance)
         vertices.append(V)

@@ -17,40 +17,38 @@ FEATURES: Tuple[str, ...] = _farcull.features
 """Where on its triangle a nearest point lies; edge i goes from corner i to the next."""
 
 INSIDE: Tuple[str, ...] = _farcull.inside
-"""Which of two objects lies inside the other: "none"; "a" or "b"; "not closed" where one may be inside
-the other, which has no inside; "unknown" where they meet, or where it was not asked."""
+"""Which of two objects lies inside the other: "none"; "a" or "b"; "not closed" if one may be inside the other, which
+is not closed; "unknown" if they meet, or if it was not asked for."""
 
 
 @dataclass(frozen=True)
 class Distance:
-    """How far two objects are apart, or with kind="all" two triangles."""
+    """The distance of two objects, or with kind="all" of two triangles."""
 
     objects: Tuple[Any, Any]  # numbers from 0, or labels
     triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
     distance: float  # rounded to nearest; infinity beyond the largest double
     squared: Optional[str]  # "numerator/denominator" in lowest terms, nothing rounded; None without exact=True
     points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
-    weights: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # of the corners, whose means the points are
+    weights: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # barycentric coordinates of the points
     normal: Tuple[float, float, float]  # unit, from the first point to the second; zeros if the triangles meet
-    features: Tuple[str, str]  # where they lie, of FEATURES
-    inside: str  # of INSIDE
+    features: Tuple[str, str]  # where the points lie: two of FEATURES
+    inside: str  # one of INSIDE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Distances(Sequence[Distance]):
-    """Distances, as arrays with a row for each, and as a sequence of :class:`Distance`.
-
-    ``found[3]`` is a Distance; ``found[found.distance < 1]`` are those that are so near.
-    """
+    """Distances, as arrays with a row for each, and as a sequence of :class:`Distance`: ``found[3]`` is a Distance,
+    and ``found[found.distance < 1]`` are the Distances below 1."""
 
     objects: NDArray[Any]  # (k, 2) numbers from 0, or labels
-    triangles: NDArray[np.int64]  # (k, 2) the first of those that are nearest
+    triangles: NDArray[np.int64]  # (k, 2) the first pair of those that are nearest
     distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity beyond the largest double
     squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms; None without exact=True
     points: NDArray[np.float64]  # (k, 2, 3) nearest points, each coordinate rounded
-    weights: NDArray[np.float64]  # (k, 2, 3) barycentric: those of the corners, whose means the points are
+    weights: NDArray[np.float64]  # (k, 2, 3) barycentric coordinates of the points
     normals: NDArray[np.float64]  # (k, 3) unit, from the first point to the second; zeros if the triangles meet
-    features: NDArray[np.uint8]  # (k, 2) where they lie, as places in FEATURES
+    features: NDArray[np.uint8]  # (k, 2) where the points lie, as places in FEATURES
     inside: NDArray[np.uint8]  # (k,) places in INSIDE
 
     def __len__(self) -> int:
@@ -76,8 +74,8 @@ class Distances(Sequence[Distance]):
         return Distances(**{name: column[rows] for name, column in vars(self).items()})
 
     def to_pandas(self) -> Any:
-        """A DataFrame with a row for each, and the columns that ``farcull distance --csv`` writes; then the
-        weights and the normal."""
+        """A DataFrame with the columns that ``farcull distance --csv`` writes, and then the weights and the
+        normal."""
         columns: Dict[str, Any] = {}
         for e, end in enumerate("ab"):
             columns["object_" + end] = self.objects[:, e]
@@ -96,11 +94,11 @@ class Distances(Sequence[Distance]):
 
 
 class DistanceFinder:
-    """Finds distances again and again, as for the frames of an animation.
+    """Finds distances again and again, as for the frames of an animation, with the answers of :func:`distances`.
 
-    The nearest triangles of one call are the first guess of the next, which saves time where little
-    moved; any other scene may follow too. The answers are those of :func:`distances`, whose options it
-    takes by name. One thread at a time may use it.
+    The nearest triangles of one call are the first guess of the next call, which saves time if little moved; any
+    other scene may follow too. A finder takes the options of :func:`distances` by name. One thread at a time may use
+    it.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -116,13 +114,9 @@ class DistanceFinder:
         which = _arguments.choice("kind", kind, ("objects", "nearest", "all"))
         wanted = _arguments.integer("k", k, 1, 2**32 - 1)
         if which == "nearest" and (all_objects or any(each)):
-            raise InputError(
-                "self", "has no meaning with kind nearest", "leave it out, or give another kind"
-            )
+            raise InputError("self", "has no meaning with kind nearest", "leave it out, or give another kind")
         if which != "nearest" and wanted != 1:
-            raise InputError(
-                "k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'"
-            )
+            raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
         pairs = _arguments.ignored(ignore)
         finder._grouped: Any = None  # of the call before, if it had an answer; else None
         finder._ignores = len(pairs) > 0
@@ -136,8 +130,8 @@ class DistanceFinder:
         object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
         poses: Optional[ArrayLike] = None,
     ) -> Distances:
-        """The distances. The parameters are those of :meth:`Collider.find`; with ``labels`` the objects
-        of an answer are labels. The finder can be used again after an error, and after Ctrl-C."""
+        """The distances. The parameters are those of :func:`distances`; poses alone move the arrays of the call
+        before. The finder can be used again after an error, and after Ctrl-C."""
         before, self._grouped = self._grouped, None
         if labels is not None and self._ignores:
             raise InputError(
@@ -164,30 +158,27 @@ def distances(
     labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
     poses: Optional[ArrayLike] = None, exact: bool = False,
 ) -> Distances:
-    """How far objects are apart, exactly, with the points that are nearest. For many frames, keep a
-    :class:`DistanceFinder`.
+    """The distances of objects, with the points that are nearest. For many frames, keep a :class:`DistanceFinder`.
 
     Parameters
     ----------
-    V, F, object_starts, labels, poses: as in :func:`collide`. With ``labels`` the objects of an answer
-        are labels.
-    kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others;
-        "all": every pair of triangles at the distance ``within`` or less.
+    V, F, object_starts, labels, poses: as in :func:`collide`. With ``labels`` the objects of an answer are labels.
+    kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others; "all": every pair
+        of triangles at the distance ``within`` or less.
     k: how many others, 1 or more; with "nearest" alone.
-    within: nothing farther apart is answered. World units, 0 or more; None: no limit. "all" needs it.
-    self: True: triangles of one object as well, without those that share a vertex position, its neighbours; or one
+    within: the largest distance that is answered. World units, 0 or more; None: no limit. "all" needs a limit.
+    self: True: also pairs of triangles of one object, without its neighbours, which share a vertex position; or one
         truth value for each object. Not with "nearest".
-    inside: whether an object lies inside another, by winding numbers.
+    inside: whether to find out if an object lies inside another, by winding numbers.
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
-    exact: True: ``squared`` as well, and with "all" each number rounded once from the exact one, which takes
-        about ten times as long. False, with "all": the pairs are exact, and a distance is off by at most 2^-32
-        of itself (0 only if the triangles meet), a normal by 2^-15, and a point by 2^-45 of the extent of
-        the pair from its triangle. Of points that are nearly as near, these may be others.
+    exact: True: ``squared`` as well, and with "all" each number is the exact one, rounded once, which takes about ten
+        times as long. False, with "all": the pairs are exact; a distance is off by at most 2^-32 of itself (0 only if
+        the triangles meet), a normal by 2^-15, and a point is off its triangle by 2^-45 of the pair's extent. If
+        several points are nearly as near, others may be given than with True.
 
-    Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the
-    labels. Raises InputError naming the argument that is wrong, also where there is nothing to ask, and
-    MemoryError.
+    Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the labels.
+    Raises InputError naming the argument that is wrong, also if there is nothing to ask; and MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(

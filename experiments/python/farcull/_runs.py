@@ -32,30 +32,28 @@ def _options(method: Any, options: Dict[str, Any]) -> Dict[str, str]:
 
 
 class Record:
-    """What a run found, and what it took. Made by :meth:`Scene.run`."""
+    """The answer of a run, and how it was found. Made by :meth:`Scene.run`."""
 
     __slots__ = ("_record", "_options", "scene", "method")
 
-    pairs: NDArray[np.int64]  # (k, 2), as in Result: the pairs that collide among those that were kept
-    neighbour_pairs: NDArray[np.int64]  # the same of neighbours, as in Result
-    kinds: Optional[NDArray[np.uint8]]  # how each of pairs meets, as in Result; None without contacts=True
-    neighbour_kinds: Optional[NDArray[np.uint8]]  # the same of neighbour_pairs
-    complete: bool  # False: the limit was reached, and there may be more pairs behind the last one
+    pairs: NDArray[np.int64]  # (k, 2), as in Result: the pairs that collide among those that culling kept
+    neighbour_pairs: NDArray[np.int64]  # as in Result
+    kinds: Optional[NDArray[np.uint8]]  # as in Result; None without contacts=True
+    neighbour_kinds: Optional[NDArray[np.uint8]]  # as in Result; None without contacts=True
+    complete: bool  # False: the limit was reached, and more pairs may follow the last one
     candidates: int  # how many pairs culling left to the exact tests
     kept_triangles: NDArray[np.uint32]  # ascending; a view that cannot be written to
     bits: NDArray[np.uint8]
-    """Of a method that draws, per triangle: 1 fully visible in the first pass, 2 in the second, 3 culled. Empty for
+    """For a method that draws, per triangle: 1 fully visible in the first pass, 2 in the second, 3 culled. Empty for
     other methods. A view that cannot be written to."""
-    views: List[Dict[str, Any]]  # name, width and height (px) of each view, and whether it was looked at
-    promises: bool  # whether the method promises to miss nothing, and its device keeps what that rests on
+    views: List[Dict[str, Any]]  # name, width and height (px) of each view, and whether it was drawn
+    promises: bool  # whether the method promises to miss nothing, and its device keeps the assumptions
     promises_reason: str
-    accounting: Optional[Dict[str, Any]]  # how many pairs are in which class; None with verify=False
+    accounting: Optional[Dict[str, Any]]  # how many pairs are in each class; None with verify=False
 
-    def __init__(
-        self, record: Any, scene: "Scene", method: str, options: Optional[Dict[str, Any]]
-    ) -> None:
+    def __init__(self, record: Any, scene: "Scene", method: str, options: Optional[Dict[str, Any]]) -> None:
         self._record = record
-        self._options = options  # for the page of show(); None where that would show other pairs
+        self._options = options  # for the page of show(); None if the page would show other pairs
         self.scene = scene
         self.method = method
 
@@ -99,15 +97,15 @@ def run(
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """What a check found."""
+    """The answer of :func:`check`."""
 
     verdict: str  # "proved", "refuted" or "not proved"
-    reason: str  # empty where proved
-    pair: Optional[Tuple[int, int]]  # the pair that it is about, where it is about one
-    decided: bool  # whether all pairs were decided; not so for a certificate of another scene
-    pairs: NDArray[np.int64]  # (k, 2): those that meet, neighbours among them, by the checker
-    culled_meeting: int  # pairs that the certificate calls culled, and that meet
-    unattested: List[str]  # what the check cannot speak about
+    reason: str  # empty if proved
+    pair: Optional[Tuple[int, int]]  # the pair that the reason is about, if it is about one pair
+    decided: bool  # whether all pairs were decided; False for a certificate of another scene
+    pairs: NDArray[np.int64]  # (k, 2): the pairs that meet, neighbours among them, by the checker
+    culled_meeting: int  # how many pairs the certificate calls culled although they meet
+    unattested: List[str]  # claims that no check can prove
     text: str  # as ``farcull check`` prints it
 
     @property
@@ -128,8 +126,8 @@ def check(
     - ``pairs``: (k, 2) triangles, in any order: are these all that meet, neighbours among them?
     - ``clearance``: of the list; default 0, or that of the certificate.
 
-    Raises InputError where neither is given or the pairs are none of the scene, and Error where the
-    certificate is not of the form.
+    Raises InputError if neither is given or if the scene lacks a triangle of the pairs, and Error for a certificate
+    that is not of the form.
     """
     if certificate is None and pairs is None:
         raise InputError("certificate", "is not given, nor are pairs", "give one of them, or both")
@@ -153,8 +151,8 @@ class Picture:
     """A picture of the answers of methods, a panel for each."""
 
     pixels: NDArray[np.uint8]  # (height, width, 4): red, green, blue, opacity; rows from the top
-    panels: List[Dict[str, Any]]  # title, headline, and the counts that they show
-    html: str  # the page, if it was asked for; else empty
+    panels: List[Dict[str, Any]]  # title, headline and counts of each
+    html: str  # the page; empty if it was not asked for
 
 
 def picture(
@@ -164,14 +162,13 @@ def picture(
 ) -> Picture:
     """Draws which triangles collide, which of them a method missed, and which it kept in vain.
 
-    - ``methods``: a panel each: a name, or options as of :meth:`Scene.run` with ``method`` among them.
-    - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and what is upwards.
-    - ``zoom``: only what collides.
+    - ``methods``: one for each panel: a name, or the options of :meth:`Scene.run` with ``method`` among them.
+    - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and the upward direction.
+    - ``zoom``: True: only the triangles that collide.
     - ``width``, ``height``: px of a panel.
-    - ``page``: True: also write a page in which the scene can be turned, as of ``farcull picture --html``;
-      :func:`show` opens it.
+    - ``page``: True: also make the page of ``farcull picture --html``; :func:`show` opens such a page.
 
-    It needs OpenGL, for which Mesa's software device will do. Raises InputError and Error.
+    Needs OpenGL; Mesa's software device will do. Raises InputError and Error.
     """
     if isinstance(methods, (str, dict)):
         methods = [methods]

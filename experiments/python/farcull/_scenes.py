@@ -28,7 +28,7 @@ def _names(names: Tuple[Any, ...]) -> List[str]:
 
 
 def _warn() -> None:
-    """Says to the caller of the package what readers passed over."""
+    """Warns the caller of the package of what readers passed over."""
     for note in _farcull.take_reading_notes():
         warnings.warn(note, stacklevel=3)
 
@@ -36,11 +36,11 @@ def _warn() -> None:
 class Scene:
     """A scene that never changes: triangles, grouped into objects.
 
-    ``Scene("two-bunnies")`` is a built-in scene; ``Scene("a.obj", "b.ply")`` are mesh files, each an
-    object; ``Scene("scene.json")`` is a scene file; :meth:`from_arrays` takes arrays. With
-    ``self=True`` every object is tested against itself as well. ``weld`` merges vertices of a mesh that
-    are at most so far apart, in its units, or relative to the diagonal of its box, as in "1e-7*size".
-    What a reader passes over is a warning. Raises Error for what cannot be read.
+    ``Scene("two-bunnies")`` is a built-in scene; ``Scene("a.obj", "b.ply")`` are mesh files, each an object;
+    ``Scene("scene.json")`` is a scene file; :meth:`from_arrays` takes arrays. With ``self=True`` every object is tested
+    against itself as well. ``weld`` merges vertices of a mesh at this distance or less, in its units, or relative to
+    the diagonal of its box, as in "1e-7*size". A reader that passes over something warns. Raises Error for files that
+    cannot be read.
     """
 
     __slots__ = ("_scene",)
@@ -74,8 +74,8 @@ class Scene:
         self: Union[bool, Sequence[bool]] = False, name: str = "arrays",
         names: Optional[Sequence[str]] = None,
     ) -> Scene:
-        """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
-        objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
+        """A scene of copies of the arrays of :func:`collide`. ``names``: of the objects; default "0", "1" and so on.
+        Raises InputError as :func:`collide` does."""
         _, given = _arguments.arrays(V, F, object_starts, None, None)
         all_objects, each = _arguments.selves(self)
         if isinstance(names, str):
@@ -93,23 +93,22 @@ class Scene:
         return getattr(scene._scene, name)
 
     def run(scene, /, method: str = "boxes", **options: Any) -> Record:
-        """Culls the scene, tests what is left, and accounts for every pair.
+        """Culls the scene, tests the candidates, and accounts for every pair.
 
-        Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
-        ``depth_format``, ``query``, ``broad_phase``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
-        ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
-        for every pair) and ``threads``. ``contacts``, ``ignore`` and ``limit`` are those of
-        :func:`collide`; ``ignore`` takes names as well, as in [("link*", "hand")]: every two different
-        objects with such names, where * stands for any characters. What the scene file ignores is
-        ignored too. Raises InputError naming the option that is wrong, and Error
-        for a fault of the device.
+        Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``, ``depth_format``,
+        ``query``, ``broad_phase``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``, ``conservative``,
+        ``device``, ``clearance``, ``full``; and ``verify`` (default True: account for every pair) and ``threads``.
+        ``contacts``, ``ignore`` and ``limit`` are those of :func:`collide`; ``ignore`` takes names as well, as in
+        [("link*", "hand")]: every two different objects with such names, where * stands for any characters. Pairs that
+        the scene file ignores are ignored too. Raises InputError naming the option that is wrong, and Error for a
+        fault of the device.
         """
         from ._runs import run
 
         return run(scene, method, **options)
 
     def __reduce__(self) -> Any:
-        """For pickle: the arrays and names, exactly, without what the scene file ignores."""
+        """For pickle: the arrays and names, exactly."""
         if len(self.ignored):
             raise InputError("scene", "ignores objects, which a pickle does not hold", "pass its file")
         return _of_arrays, (
@@ -131,9 +130,9 @@ def _of_arrays(V: Any, F: Any, starts: Any, self: Any, name: str, names: Any) ->
 class Frames:
     """A scene that moves: ``for frame, scene in farcull.Frames("cloth", frames=60): ...``.
 
-    The names are those of :class:`Scene`: a built-in scene that moves, or mesh files with %d or %04d
-    in their names. ``frames``: a number N (0 to N - 1), or (first, last). Raises Error where nothing
-    moves, and for a frame that cannot be read when it is reached. ``weld``: as of :class:`Scene`.
+    ``names``: a built-in scene that moves, or mesh files with %d or %04d in their names. ``frames``: a number N for 0
+    to N - 1, or (first, last). ``self``, ``weld``: as for :class:`Scene`. Raises Error if nothing moves, and when it
+    reaches a frame that cannot be read.
     """
 
     def __init__(
@@ -157,7 +156,7 @@ class Frames:
         return self._frames.last - self._frames.first + 1
 
     def at(self, frame: int) -> Scene:
-        """The scene at a frame. A simulation computes the frames before it first."""
+        """The scene at a frame. A simulation first computes the frames before it."""
         scene = Scene._of(self._frames.at(_arguments.integer("frame", frame, 0, 2**31 - 1)))
         _warn()
         return scene
