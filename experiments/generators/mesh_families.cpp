@@ -1,21 +1,24 @@
 // Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
 // small triangles at a ground. Others have one object that is tested against itself: cloth, ropes
-// and folds. Motions have a member for each frame. Bars and hub have more contacts than fixed
-// buffers hold.
+// and folds. Motions have a member for each frame. Bars and hub have more contacts than buffers of
+// a fixed size.
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "experiments/generators/pair_generators.h"
-#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 namespace {
 
 using Objects = std::vector<SuiteObject>;
 
-std::uint32_t index(std::size_t i) { return static_cast<std::uint32_t>(i); }
+std::uint32_t last(const SuiteObject& object) {
+  return static_cast<std::uint32_t>(object.vertices.size() - 1);
+}
+
+/// Adds the triangle of the last three vertices.
+void add_last(SuiteObject& object) { object.add(last(object) - 2, last(object) - 1, last(object)); }
 
 /// A sheet of `columns` by `rows` cells whose vertex (i, j) is at place(i, j).
 template <class Place>
@@ -27,7 +30,7 @@ SuiteObject sheet(int columns, int rows, const Place& place) {
   return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
-/// The place of column i in a sheet that is folded to and fro, in layers of `width` columns.
+/// The place across of column i in a sheet that is folded to and fro, in layers of `width` columns.
 double folded(int i, int width) {
   const int layer = i / width;
   const int within = i % width;
@@ -45,14 +48,14 @@ Objects cloth(RandomDraws& draws, double gap, int cells) {
   })};
 }
 
-/// A sheet folded flat: every layer is exactly in the plane z = 0, slightly beside the others.
+/// A sheet folded flat: all layers are in the plane z = 0, each slightly beside the others.
 Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
-/// Point i of the unit circle, computed without sines by a rational parameter for each quarter.
+/// Point i of the unit circle. Each quarter is computed by a rational parameter, without sines.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
@@ -91,7 +94,7 @@ Objects book(RandomDraws& draws, double pages, int directions) {
     const double length = draws.coarse(0.25, 1);
     const double z = draws.coarse(-1, 1);
     out.vertices.emplace_back(x * length, y * length, z);
-    out.add(0, 1, index(out.vertices.size() - 1));
+    out.add(0, 1, last(out));
   }
   return {std::move(out)};
 }
@@ -111,7 +114,7 @@ Objects degenerate(RandomDraws& draws, double one_in, int cells) {
     if (way == 2) {  // the middle of an edge: three corners on a line
       const Vec3 middle = (out.vertices[i] + out.vertices[j]) / 2;
       out.vertices.push_back(middle);
-      k = index(out.vertices.size() - 1);
+      k = last(out);
     }
   }
   return {std::move(out)};
@@ -245,10 +248,9 @@ Objects ground(RandomDraws& draws, double ratio, int count) {
   for (int i = 0; i < count; ++i) {
     Vec3 at = draws.point();
     at.z() = draws.chance(3) ? 1 / ratio : 0;
-    const auto first = static_cast<std::uint32_t>(small.vertices.size());
     for (int k = 0; k < 3; ++k) small.vertices.emplace_back(at + draws.point() / ratio);
-    if (draws.chance(4)) small.vertices[first].z() = 0;
-    small.add(first, first + 1, first + 2);
+    if (draws.chance(4)) small.vertices[last(small) - 2].z() = 0;
+    add_last(small);
   }
   return {std::move(large), std::move(small)};
 }
@@ -279,8 +281,8 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-// Motions. All frames are made with the same draws; `now` is what moves. All but cogs lean, so that
-// no face is parallel to an axis of the coordinates, and have coordinates of few bits, so that
+// Motions. All frames are made with the same draws; only `now` differs. All but the cogs lean, so
+// that no face is parallel to an axis of the coordinates. Their coordinates have few bits, so that
 // contacts stay exact.
 
 /// A box of 12 triangles, oriented outwards.
@@ -302,7 +304,7 @@ Objects leaning(RandomDraws& draws, Objects objects) {
   return objects;
 }
 
-/// A wall 1/8 thick around x = 0, and a plate 2^-10 thick at x = `now`. Inside the wall the plate
+/// A wall 1/8 thick around x = 0, and a plate 2^-10 thick at x = `now`. A plate inside the wall
 /// meets none of the wall's triangles.
 Objects tunnel(RandomDraws& draws, double now, int) {
   return leaning(draws, {box_object(Vec3(-0x1p-4, -4, -4), Vec3(0x1p-4, 4, 4)),
@@ -320,8 +322,8 @@ Objects stack(RandomDraws& draws, double now, int) {
   return leaning(draws, std::move(out));
 }
 
-/// A thread through a ring. It moves by 1.5 with each frame, and is `now` away from the axis. At
-/// 7/8 its side touches an edge of the ring.
+/// A thread through a ring. It moves along its axis by 1.5 with each frame, and lies `now` away
+/// from the ring's axis. If `now` is 7/8, its side touches an edge of the ring.
 Objects thread(RandomDraws& draws, double now, int frame) {
   Mesh ring = shapes::surface(16, 4, true, [](std::uint32_t i, std::uint32_t j) -> Vec3 {
     const double radius = j == 0 || j == 3 ? 1 : 1.5;
@@ -334,8 +336,8 @@ Objects thread(RandomDraws& draws, double now, int frame) {
   return leaning(draws, {{std::move(ring.vertices), std::move(ring.triangles)}, std::move(rod)});
 }
 
-/// Two cogs, mirror images of each other: both turn by `now` 32ths of a quarter turn. At x = 1
-/// their teeth meet tip to tip or not at all; how deep depends on rounding.
+/// Two cogs, mirror images of each other. Both turn by `now` 32ths of a quarter turn. Their teeth
+/// meet tip to tip at x = 1, or not at all; how deep they meet depends on rounding.
 Objects cogs(RandomDraws&, double now, int) {
   const Vec3 turn = on_circle(static_cast<int>(now), 32);
   SuiteObject cog;
@@ -371,7 +373,7 @@ Objects bars(RandomDraws&, double, int n) {
                            {Vec3(-1, at - width, 0), Vec3(1, at, 0), Vec3(-1, at + width, 0)});
     out[1].vertices.insert(out[1].vertices.end(),
                            {Vec3(at, -1, -width), Vec3(at, 1, 0), Vec3(at, -1, width)});
-    for (SuiteObject& object : out) object.add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
+    for (SuiteObject& object : out) add_last(object);
   }
   return out;
 }
@@ -385,7 +387,7 @@ Objects hub(RandomDraws& draws, double, int n) {
     const Vec3 at(4.0 * (i % n) / n - 2, 4.0 * (i / n) / n - 6, -0.5 / n);
     for (int k = 0; k < 3; ++k)
       out[1].vertices.emplace_back(at + Vec3(k == 1, k == 2, k > 0 ? 1 : -draws.unit()) / n);
-    out[1].add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
+    add_last(out[1]);
   }
   return out;
 }
@@ -401,7 +403,7 @@ MeshFamily motion(const char* name, decltype(MeshFamily::make) make,
   return out;
 }
 
-/// A row of the table of families. small: the first member is in a small suite too.
+/// A row of the table of families. small: a small suite has the first member.
 MeshFamily family(const char* name, decltype(MeshFamily::make) make, bool self, bool small,
                   std::vector<MeshFamily::Member> members) {
   return {name, self, make, std::move(members), small ? 1u : 0u};

@@ -1,16 +1,10 @@
-// Makes pairs of triangles and meshes that are hard to decide: random draws; generators of pairs by
-// name, for tests and for comparing the exact oracles; and the families of a suite.
+// Makes pairs of triangles and meshes that are hard to decide: random draws, and the families of a
+// suite.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <vector>
 
-#include "core/base/random.h"
-#include "core/scene/scene.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 
@@ -18,10 +12,11 @@ namespace farcull {
 // two are exact doubles, so triangles made of them that touch still touch when written as doubles.
 // Nothing here uses sines or logarithms, whose last bits differ between platforms.
 
-class RandomDraws : public RandomNumbers {
+class RandomDraws : public shapes::Random {
  public:
-  using RandomNumbers::RandomNumbers;
+  using shapes::Random::Random;
 
+  /// True one time in `of`.
   bool chance(int of) { return below(of) == 0; }
   /// A whole number in lo .. hi, both included, of their type. Precondition: |lo|, |hi| <= 2^52.
   template <class Low, class High>
@@ -41,12 +36,7 @@ class RandomDraws : public RandomNumbers {
     return {x, y, z};
   }
   /// A point in the cube [-1, 1]^3.
-  Vec3 point() {
-    const double x = between(-1, 1);
-    const double y = between(-1, 1);
-    const double z = between(-1, 1);
-    return {x, y, z};
-  }
+  Vec3 point() { return in_cube(1); }
 };
 
 /// Two triangles with finite coordinates; either may be degenerate. Nothing is decided about them.
@@ -78,21 +68,11 @@ struct Frame {
   Vec3 at(const Vec3& p) const { return at(p.x(), p.y(), p.z()); }
 };
 
-/// The axes of the coordinates, in any order and direction.
-Frame straight_frame(RandomDraws& draws);
 /// The rotation of a quaternion with parts -1, 0 and 1, times 3: its entries are 1, 2, -1 or -2. No
 /// axis is along an axis of the coordinates.
 Frame leaning_frame(RandomDraws& draws);
 /// The rotation of a quaternion with whole parts from -9 to 9; its entries are rounded.
 Frame turned_frame(RandomDraws& draws);
-
-struct PairGenerator {
-  std::string name;
-  DrawnPair (*make)(RandomDraws&);
-};
-
-/// Each generator makes pairs that meet and pairs that do not, at least one in fifty of each kind.
-const std::vector<PairGenerator>& pair_generators();
 
 // The families of a suite (docs/suite.md), of pairs and of meshes. Each makes pairs that meet and
 // pairs that do not. Most have a parameter: a number that goes to an extreme.
@@ -105,11 +85,10 @@ struct PairFamily {
   std::string name;
   std::string description;     // one line
   std::string parameter;       // what the parameter means; "" for none
-  std::vector<double> values;  // of the parameter; pair i has the i-th, cyclically
+  std::vector<double> values;  // values of the parameter; pairs take them in turn
   MadePair (*make)(RandomDraws& draws, double parameter);
 };
 
-/// In the order of the files.
 const std::vector<PairFamily>& pair_families();
 
 /// A seed for one item of a suite, from the seed of the suite, a name and a number.
@@ -127,7 +106,7 @@ struct SuiteObject {
 /// fans, duplicates).
 struct MeshFamily {
   std::string name;
-  bool self = false;  // its objects are tested against themselves too
+  bool self = false;  // the objects are tested against themselves too
   /// Makes the objects. detail: how fine they are, in a unit that each family chooses.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
@@ -147,10 +126,5 @@ const std::vector<MeshFamily>& mesh_families();
 /// itself, vertices at one position are one vertex.
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index);
-
-// Parts of pair_families(): distance_families() has gaps, distances from the origin and scales;
-// shape_families() has random triangles, slivers, degenerate triangles and folds.
-std::vector<PairFamily> distance_families();
-std::vector<PairFamily> shape_families();
 
 }  // namespace farcull

@@ -1,8 +1,8 @@
 // Pairs of triangles that filters in doubles find hard: near a common plane, where products
-// underflow or overflow, and those of experiments/generators/pair_generators.h.
+// underflow or overflow, and those of tests/lab/drawn_pairs.h.
 #pragma once
 
-#include "experiments/generators/pair_generators.h"
+#include "tests/lab/drawn_pairs.h"
 #include "tests/lab/reference.h"
 #include "verify/rounding.h"
 

@@ -1,8 +1,8 @@
 // The accounting of distances: its bounds against rational numbers, and wrong answers that it has
 // to find.
+#include "tests/lab/drawn_pairs.h"
 #include "verify/distance_accounting.h"
 
-#include "experiments/generators/pair_generators.h"
 #include "tests/lab/distances.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"

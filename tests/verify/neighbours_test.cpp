@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "experiments/generators/pair_generators.h"
+#include "tests/lab/drawn_pairs.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"

@@ -1,9 +1,9 @@
 // Certificates for a clearance: distances decided in integers, a distance of exactly the clearance
 // counts, and one unit in the last place more or less does not go unseen.
 #include "core/base/error.h"
-#include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
+#include "tests/lab/drawn_pairs.h"
 #include "tests/lab/reference.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"

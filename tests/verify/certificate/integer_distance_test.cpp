@@ -1,8 +1,8 @@
 // Exact distances in integers agree with brute force in rationals, and so do their features; the 38
 // directions prove just what is as far.
+#include "tests/lab/drawn_pairs.h"
 #include "verify/certificate/integer_distance.h"
 
-#include "experiments/generators/pair_generators.h"
 #include "experiments/method/distances.h"
 #include "tests/lab/grid_distance.h"
 #include "tests/lab/hard_pairs.h"

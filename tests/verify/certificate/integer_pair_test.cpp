@@ -1,7 +1,7 @@
 // The integer pair agrees with rational arithmetic, direction by direction.
+#include "tests/lab/drawn_pairs.h"
 #include "verify/certificate/integer_pair.h"
 
-#include "experiments/generators/pair_generators.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/box_pairs.h"
