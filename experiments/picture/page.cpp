@@ -1,6 +1,6 @@
-// Collects the triangles, the colliding pairs and the answers of each step, and puts
-// them into the page of web/ as compressed blocks, with a JSON text that names the blocks. A block
-// of numbers holds their differences by byte, compressed by zlib and written as Base64.
+// Pages that show a scene in a browser. The triangles, the colliding pairs and the answers of each
+// step are put into the pages of web/ as compressed blocks, with a JSON text that names the blocks.
+// A block of numbers holds their differences by byte, compressed by zlib and written as Base64.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -13,72 +13,65 @@
 
 #include "commit.h"
 #include "core/base/bytes.h"
-#include "core/base/error.h"
+#include "embedded/clash_html.h"
+#include "embedded/clash_js.h"
 #include "embedded/frame_html.h"
 #include "embedded/page_css.h"
 #include "embedded/page_html.h"
 #include "embedded/page_js.h"
 #include "embedded/page_view_js.h"
-#include "experiments/picture/page_parts.h"
-#include "experiments/picture/panel.h"
+#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
 #include "verify/contact.h"
 
+#if FARCULL_WITH_THREE
+
+// Puts the bytes of a file between farcull_NAME and farcull_NAME_end. The assembler includes the
+// file, since the compiler would take minutes for an array.
+#define FARCULL_EMBED(name, path)          \
+  asm(".pushsection .rodata\n"             \
+      "farcull_" #name ": .incbin \"" path \
+      "\"\n"                               \
+      "farcull_" #name                     \
+      "_end:\n"                            \
+      ".popsection\n");                    \
+  extern "C" const char farcull_##name[], farcull_##name##_end[];
+
+FARCULL_EMBED(three, FARCULL_THREE)
+FARCULL_EMBED(three_controls, FARCULL_THREE_CONTROLS)
+FARCULL_EMBED(three_licence, FARCULL_THREE_LICENCE)
+
+#endif
+
 namespace farcull {
 namespace {
+
+using nlohmann::json;
+
+// three.js, a library for WebGL in browsers (Debian's libjs-three), which is part of the program.
+// All three are empty if the program was built without three.js.
+struct ThreeJs {
+  std::string_view library;   // three.min.js
+  std::string_view controls;  // OrbitControls.js: the mouse and fingers turn and move the camera
+  std::string_view licence;   // Debian's file with its owners and terms
+};
+
+ThreeJs three_js() {
+#if FARCULL_WITH_THREE
+  return {.library = {farcull_three, farcull_three_end},
+          .controls = {farcull_three_controls, farcull_three_controls_end},
+          .licence = {farcull_three_licence, farcull_three_licence_end}};
+#else
+  return {};
+#endif
+}
 
 std::string base64_of(const std::string& bytes) {
   return to_base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
-
-}  // namespace
-
-std::string packed_bytes(std::string_view bytes) { return base64_of(gzip(bytes)); }
-
-std::string packed_numbers(std::span<const std::uint32_t> numbers) {
-  const std::size_t n = numbers.size();
-  std::string planes(4 * n, '\0');
-  std::uint32_t before = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t difference = numbers[i] - before;
-    before = numbers[i];
-    const std::uint32_t sign = difference >> 31 != 0 ? ~std::uint32_t{0} : 0;
-    const std::uint32_t zigzag = difference << 1 ^ sign;
-    for (std::size_t byte = 0; byte < 4; ++byte)
-      planes[byte * n + i] = static_cast<char>(zigzag >> 8 * byte & 255);
-  }
-  return packed_bytes(planes);
-}
-
-std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count) {
-  std::string out((count + 7) / 8, '\0');
-  for (const std::uint32_t number : numbers)
-    out[number / 8] = static_cast<char>(out[number / 8] | 1 << number % 8);
-  return out;
-}
-
-std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box) {
-  constexpr double kSteps = 65535;
-  std::vector<std::uint32_t> out;
-  out.reserve(3 * points.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    // Uses halves, since the extent of a box of doubles may overflow.
-    const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
-    for (const Vec3& p : points) {
-      const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;
-      out.push_back(static_cast<std::uint32_t>(std::lround(kSteps * part)));
-    }
-  }
-  return out;
-}
-
-namespace {
-
-using nlohmann::json;
 
 json colour(const Rgba& c) { return {c.r, c.g, c.b}; }
 
@@ -91,13 +84,6 @@ Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most
                "leave objects out, or draw the flat picture alone, with -o");
 }
 
-json objects_of(const Scene& scene) {
-  json out = json::array();
-  for (const Object& object : scene.objects)
-    out.push_back({object.name, object.first_triangle, object.triangle_count});
-  return out;
-}
-
 // JSON inside a script element: its text must not look like the element's end.
 std::string for_script(const json& data) {
   std::string out;
@@ -106,17 +92,8 @@ std::string for_script(const json& data) {
   return out;
 }
 
-}  // namespace
-
-std::string PageBlocks::add(const std::string& text) {
-  const std::string name = fmt::format("block-{}", count_++);
-  text_ += fmt::format("<script type=\"text/plain\" id=\"{}\">", name);
-  text_ += text;
-  text_ += "</script>\n";
-  return name;
-}
-
-void require_page_size(const Scene& scene) {
+// Throws Error naming --html if a page cannot hold the scene.
+void require_size(const Scene& scene) {
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
   if (scene.triangles.size() > kMostPageTriangles)
@@ -125,6 +102,20 @@ void require_page_size(const Scene& scene) {
     throw too_large("objects", scene.objects.size(), kMostPageObjects);
 }
 
+// Blocks of a page, each a script element that browsers do not run.
+struct PageBlocks {
+  // Returns the name of the new block.
+  std::string add(const std::string& block) {
+    const std::string name = fmt::format("block-{}", count++);
+    text += fmt::format("<script type=\"text/plain\" id=\"{}\">", name) + block + "</script>\n";
+    return name;
+  }
+
+  std::string text;
+  int count = 0;
+};
+
+// The corners of the box, and its extents relative to the largest one.
 json page_box(const Box& box) {
   const Vec3 extent = 0.5 * box.hi - 0.5 * box.lo;
   const double largest = extent.maxCoeff();
@@ -133,21 +124,21 @@ json page_box(const Box& box) {
           {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))}};
 }
 
-json page_vertices(const Scene& scene, const Box& box, PageBlocks& blocks) {
-  return {{"vertices", scene.vertices.size()},
-          {"positions", blocks.add(packed_numbers(quantized(scene.vertices, box)))}};
-}
-
-void add_page_triangles(const Scene& scene, PageBlocks& blocks, json& frame) {
-  std::vector<std::uint32_t> flat;
+// The vertices, rounded in the box, the triangles and the objects.
+json frame_of(const Scene& scene, const Box& box, PageBlocks& blocks) {
+  json objects = json::array();
+  for (const Object& object : scene.objects)
+    objects.push_back({object.name, object.first_triangle, object.triangle_count});
+  std::vector<std::uint32_t> corners;
   for (const auto& triangle : scene.triangles)
-    flat.insert(flat.end(), triangle.begin(), triangle.end());
-  frame["objects"] = objects_of(scene);
-  frame["triangles"] = scene.triangles.size();
-  frame["corners"] = blocks.add(packed_numbers(flat));
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  const std::string positions = blocks.add(packed_numbers(quantized(scene.vertices, box)));
+  return {{"vertices", scene.vertices.size()},
+          {"positions", positions},
+          {"objects", objects},
+          {"triangles", scene.triangles.size()},
+          {"corners", blocks.add(packed_numbers(corners))}};
 }
-
-namespace {
 
 // Replaces the first occurrence of `mark` in the page.
 void put(std::string& page, const std::string& mark, std::string_view text) {
@@ -156,8 +147,8 @@ void put(std::string& page, const std::string& mark, std::string_view text) {
   page.replace(at, mark.size(), text);
 }
 
-}  // namespace
-
+// A page: web/frame.html with the title, the body, the style, the blocks, three.js, page_view.js,
+// the page's own script, and its data.
 std::string framed_page(std::string_view title, std::string_view body, const PageBlocks& blocks,
                         const json& about, std::string_view script) {
   const ThreeJs three = three_js();
@@ -165,7 +156,7 @@ std::string framed_page(std::string_view title, std::string_view body, const Pag
   put(page, "<!--TITLE-->", title);
   put(page, "<!--BODY-->", body);
   put(page, "/*STYLE*/", embedded::page_css);
-  put(page, "<!--BLOCKS-->", blocks.text());
+  put(page, "<!--BLOCKS-->", blocks.text);
   put(page, "<!--LICENCE-->", three.licence);
   put(page, "/*THREE*/", three.library);
   put(page, "/*CONTROLS*/", three.controls);
@@ -175,26 +166,23 @@ std::string framed_page(std::string_view title, std::string_view body, const Pag
   return page;
 }
 
-namespace {
-
 class PageMaker {
  public:
   PageMaker(const PageArguments& arguments, MeasurementContext& lab)
       : arguments_(arguments), lab_(lab) {
     const Scene& scene = open_scene(arguments_.picture, lab_);
-    require_page_size(scene);
+    require_size(scene);
     box_ = bounds(scene);
     const std::vector<TrianglePair>& pairs = lab_.truth().pairs;
     if (pairs.size() > kMostPagePairs)
       throw too_large("colliding pairs", pairs.size(), kMostPagePairs);
-    frame_ = page_vertices(scene, box_, blocks_);
-    add_page_triangles(scene, blocks_, frame_);
+    frame_ = frame_of(scene, box_, blocks_);
     std::vector<std::uint32_t> a, b;
     for (const TrianglePair& pair : pairs) {
       a.push_back(pair.a);
       b.push_back(pair.b);
     }
-    // One byte per pair: the index of its kind in the array `contacts` of finish().
+    // One byte per pair: the index of its kind in `contacts` of finish().
     std::string contacts;
     for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
     frame_["a"] = blocks_.add(packed_numbers(a));
@@ -240,12 +228,12 @@ class PageMaker {
   }
 
  private:
-  // The upward direction while the reader turns the scene.
+  // The direction that stays upright while the reader turns the scene.
   Vec3 world_up() const {
     const View view = camera(arguments_.picture);
     const std::string& up = arguments_.picture.up;
     const Vec3 given = parse_view(up.empty() ? "y" : up).rows.row(2);
-    // If the default is the direction of sight, camera() has chosen another one.
+    // If this is the direction of sight, camera() has chosen another one.
     return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
   }
 
@@ -283,7 +271,71 @@ class PageMaker {
   std::vector<PanelResult> results_;
 };
 
+// The data of a row. Appends the ends of the segments of its curve to `segments`.
+json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector<Vec3>& segments) {
+  // For parts that are apart: the line between two nearest points.
+  std::vector<std::array<Vec3, 2>> lines = row.segments;
+  if (row.squared && !row.inner) lines.push_back(row.witness);
+  const std::size_t first = segments.size();
+  for (const auto& ends : lines) segments.insert(segments.end(), ends.begin(), ends.end());
+  const std::vector<Vec3> corners = {row.box.lo, row.box.hi};
+  json out = {{"a", row.objects.a},
+              {"b", row.objects.b},
+              {"verdict", to_string(row.verdict)},
+              {"exact", to_string(row.exact)},
+              {"ignored", row.ignored},
+              {"what", clash_words(scene, row)},
+              {"depth", nullptr},
+              {"curve", row.curve},
+              {"distance", row.squared ? json(row.distance) : json(nullptr)},
+              {"at", point_json(row.witness[0])},
+              {"inner", json_of(row.inner)},
+              {"box", quantized(corners, box)},
+              {"segments", {first / 2, lines.size()}}};
+  if (row.depth) out["depth"] = {row.depth->lo, row.depth->hi};
+  return out;
+}
+
 }  // namespace
+
+std::string packed_bytes(std::string_view bytes) { return base64_of(gzip(bytes)); }
+
+std::string packed_numbers(std::span<const std::uint32_t> numbers) {
+  const std::size_t n = numbers.size();
+  std::string planes(4 * n, '\0');
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t difference = numbers[i] - before;
+    before = numbers[i];
+    const std::uint32_t sign = difference >> 31 != 0 ? ~std::uint32_t{0} : 0;
+    const std::uint32_t zigzag = difference << 1 ^ sign;
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      planes[byte * n + i] = static_cast<char>(zigzag >> 8 * byte & 255);
+  }
+  return packed_bytes(planes);
+}
+
+std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count) {
+  std::string out((count + 7) / 8, '\0');
+  for (const std::uint32_t number : numbers)
+    out[number / 8] = static_cast<char>(out[number / 8] | 1 << number % 8);
+  return out;
+}
+
+std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box) {
+  constexpr double kSteps = 65535;
+  std::vector<std::uint32_t> out;
+  out.reserve(3 * points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    // Uses halves, since the extent of a box of doubles may overflow.
+    const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
+    for (const Vec3& p : points) {
+      const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;
+      out.push_back(static_cast<std::uint32_t>(std::lround(kSteps * part)));
+    }
+  }
+  return out;
+}
 
 std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
                                        std::vector<int> resolutions) {
@@ -309,14 +361,53 @@ void require_three() {
 }
 
 void require_page_size(const PageArguments& arguments, MeasurementContext& lab) {
-  const Scene& scene = open_scene(arguments.picture, lab);
-  require_page_size(scene);
+  require_size(open_scene(arguments.picture, lab));
 }
 
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat,
                      MeasurementContext& lab) {
   require_three();
   return PageMaker(arguments, lab).finish(flat);
+}
+
+void require_clash_page(const Scene& scene) {
+  require_three();
+  require_size(scene);
+}
+
+std::string clash_page(const Scene& scene, const ClashRecord& record, const std::string& unit) {
+  require_clash_page(scene);
+  const Box box = bounds(scene);
+  PageBlocks blocks;
+  json frame = frame_of(scene, box, blocks);
+  const std::string none = blocks.add(packed_numbers({}));
+  frame["a"] = frame["b"] = frame["contacts"] = none;
+  json rows = json::array();
+  std::vector<Vec3> segments;
+  for (const ClashRow& row : record.rows) rows.push_back(row_of(scene, row, box, segments));
+  json about = page_box(box);
+  about.update(
+      json{{"title", scene.name},
+           {"commit", FARCULL_COMMIT},
+           {"unit", unit},
+           {"asked", record.asked},
+           {"examined", record.examined},
+           {"clean", is_clean(record)},
+           {"forward", {-0.55, 0.7, -0.45}},
+           {"worldUp", {0, 0, 1}},
+           {"zoom", false},
+           {"rows", rows},
+           {"segments", blocks.add(packed_numbers(quantized(segments, box)))},
+           {"frame", frame},
+           // Two hues that people with colour blindness can distinguish; neither one is green.
+           {"colours",
+            {{"found", {0, 0, 0}},
+             {"missed", {0, 0, 0}},
+             {"idle", {232, 128, 16}},
+             {"idlePart", 1},
+             {"through", 0},
+             {"objects", json(8, {60, 120, 216})}}}});
+  return framed_page("Clashes by farcull", embedded::clash_html, blocks, about, embedded::clash_js);
 }
 
 }  // namespace farcull

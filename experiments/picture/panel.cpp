@@ -8,26 +8,25 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/method/run.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of diameter 2 sqrt(2) px contains a whole pixel wherever it lies: the middle of the disc
-// is at most half a diagonal from the middle of a pixel, and the pixel's corners are another half
-// from there. So one pixel has the pure colour.
+// A disc of diameter 2 sqrt(2) px contains a whole pixel wherever it lies, so that one pixel has
+// the pure colour: the disc's middle is at most half a diagonal from the middle of a pixel, and the
+// pixel's corners are another half diagonal from there.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.
 class Clusters2d {
  public:
+  using Cell = std::pair<long, long>;
   explicit Clusters2d(double reach) : reach_(reach) {}
 
   void add(double x, double y, double radius) {
-    const std::pair cell(std::lround(x / reach_), std::lround(y / reach_));
-    Group& group = cells_[cell];
+    Group& group = cells_[{std::lround(x / reach_), std::lround(y / reach_)}];
     group.add(x - radius, y - radius);
     group.add(x + radius, y + radius);
   }
@@ -43,36 +42,30 @@ class Clusters2d {
     }
   };
 
-  // Cells that touch, also at corners, form one group.
-  std::vector<Group> groups() const {
+  // Takes out the groups. Cells that touch, also at corners, form one group.
+  std::vector<Group> take_groups() {
     std::vector<Group> out;
-    std::map<std::pair<long, long>, bool> done;
-    for (const auto& [cell, group] : cells_) {
-      if (done[cell]) continue;
-      done[cell] = true;
-      Group all = group;
-      std::vector<std::pair<long, long>> open = {cell};
+    while (!cells_.empty()) {
+      Group& all = out.emplace_back();
+      std::vector<Cell> open = {cells_.begin()->first};
       while (!open.empty()) {
-        const auto [cx, cy] = open.back();
+        const auto found = cells_.find(open.back());
         open.pop_back();
-        for (long dx = -1; dx <= 1; ++dx) {
-          for (long dy = -1; dy <= 1; ++dy) {
-            const auto next = cells_.find({cx + dx, cy + dy});
-            if (next == cells_.end() || done[next->first]) continue;
-            done[next->first] = true;
-            all.add(next->second);
-            open.push_back(next->first);
-          }
+        if (found == cells_.end()) continue;
+        const auto [x, y] = found->first;
+        all.add(found->second);
+        cells_.erase(found);
+        for (const long dx : {-1, 0, 1}) {
+          for (const long dy : {-1, 0, 1}) open.emplace_back(x + dx, y + dy);
         }
       }
-      out.push_back(all);
     }
     return out;
   }
 
  private:
-  double reach_;
-  std::map<std::pair<long, long>, Group> cells_;
+  double reach_;  // side of a cell, px
+  std::map<Cell, Group> cells_;
 };
 
 }  // namespace
@@ -95,7 +88,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   if (missed.empty()) return 0;
   const double line = line_of(window);
   std::vector<PictureTriangle> over;
-  // Misses farther apart than the width of a ring get their own rings.
+  // Misses that are farther apart than the width of a ring get rings of their own.
   const double ring = 11 * line;
   Clusters2d clusters(ring);
   for (const std::uint32_t t : missed) {
@@ -112,7 +105,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   }
   lay_over(image, painted(context, scene, window, over), 1);
   std::uint64_t rings = 0;
-  for (const Clusters2d::Group& group : clusters.groups()) {
+  for (const Clusters2d::Group& group : clusters.take_groups()) {
     const double size = std::max(group.x1 - group.x0, group.y1 - group.y0);
     if (size > 2 * ring) continue;  // visible without a ring
     draw_ring(image, 0.5 * (group.x0 + group.x1), 0.5 * (group.y0 + group.y1),

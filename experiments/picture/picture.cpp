@@ -1,31 +1,23 @@
-// Converts and checks the command line of a picture, then makes the picture: runs the methods,
-// compares their pairs with the truth, and draws a panel for each. Objects are pale, collisions
-// strong, and missed pairs red.
+// Checks the arguments of a picture, and makes the picture: runs the methods, compares their pairs
+// with the truth, and draws a panel for each. Objects are pale, collisions strong, and missed pairs
+// red.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <optional>
 
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/gl/picture/picture.h"
-#include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
-
-// The command line of a picture: its values as text, and its checks.
-
 namespace {
 
 constexpr long kUsualFrames = 30;
@@ -41,180 +33,9 @@ void as_option(const std::string& option, Parse parse) {
   }
 }
 
-// "cullide", or "cullide:128" if the panel has a resolution of its own.
-std::string panel_word(const RunOptions& options) {
-  std::string out = to_string(options.method);
-  if (options.resolution > 0) out += fmt::format(":{}", options.resolution);
-  return out;
-}
-
-}  // namespace
-
-View camera(const PictureArguments& arguments) {
-  View view = parse_view(arguments.view.empty() ? kUsualView : arguments.view);
-  const Vec3 forward = view.rows.row(2);
-  Vec3 up = parse_view(arguments.up.empty() ? "y" : arguments.up).rows.row(2);
-  if (forward.cross(up).norm() < 1e-6) {
-    if (!arguments.up.empty()) {
-      throw Error("--up", "it is the direction that --view looks along",
-                  "give another axis to one of them");
-    }
-    up = Vec3(0, 0, forward[1] > 0 ? 1 : -1);
-  }
-  const Vec3 right = forward.cross(up).normalized();
-  view.rows << right.transpose(), right.cross(forward).transpose(), forward.transpose();
-  return view;
-}
-
-FrameRange frames_of(const PictureArguments& arguments) {
-  if (arguments.frames) return *arguments.frames;
-  const std::vector<std::string>& names = arguments.scene.names;
-  const bool motion = names.size() == 1 && is_builtin_scene(names.front());
-  if (motion) return {0, kUsualFrames - 1};
-  return {*arguments.frame, *arguments.frame};
-}
-
-std::string command_of(const PictureArguments& arguments) {
-  std::string out = "farcull picture";
-  const auto add = [&](const std::string& word) { out += " " + quoted(word); };
-  const auto option = [&](const std::string& name, const std::string& value) {
-    add(name);
-    add(value);
-  };
-  for (const std::string& word : arguments.scene.words()) add(word);
-  const RunOptions& first = arguments.panels.front();
-  if (arguments.panels.size() == 1) {
-    option("--method", to_string(first.method));
-    if (first.resolution > 0) option("--resolution", std::to_string(first.resolution));
-  } else {
-    std::string list;
-    for (const RunOptions& options : arguments.panels)
-      list += (list.empty() ? "" : ",") + panel_word(options);
-    option("--compare", list);
-  }
-  for (const RunOptions& options : arguments.panels) {
-    if (!fattens(options.method)) continue;
-    const std::string radius = radius_text(options.radius);
-    if (radius != "budget") option("--radius", radius);
-    if (options.offset != "obb") option("--offset", options.offset);
-    if (options.depth) option("--depth", *options.depth == DepthMode::fixed ? "fixed" : "fragment");
-    break;
-  }
-  if (!first.device.empty()) option("--device", first.device);
-  if (arguments.self) add("--self");
-  if (arguments.frame) {
-    const FrameRange range = frames_of(arguments);
-    option("--frame", std::to_string(*arguments.frame));
-    option("--frames", fmt::format("{}:{}", range.first, range.last));
-  }
-  if (!arguments.view.empty()) option("--view", arguments.view);
-  if (!arguments.up.empty()) option("--up", arguments.up);
-  if (arguments.zoom) add("--zoom");
-  option("--size", fmt::format("{}x{}", arguments.width, arguments.height));
-  return out;
-}
-
-void validate(const PictureArguments& arguments) {
-  if (arguments.panels.empty() || arguments.panels.size() > kMostPanels) {
-    throw Error("--compare", fmt::format("{} panels do not fit", arguments.panels.size()),
-                fmt::format("name 1 to {} methods", kMostPanels));
-  }
-  for (const int side : {arguments.width, arguments.height}) {
-    if (side >= 64 && side <= kMostPicture) continue;
-    throw Error("--size", fmt::format("{} px is outside 64 .. {}", side, kMostPicture),
-                "give the width and height of a panel in that range, as in 900x760");
-  }
-  for (const RunOptions& options : arguments.panels) validate(options);
-  as_option("--view", [&] { parse_view(arguments.view.empty() ? kUsualView : arguments.view); });
-  as_option("--up", [&] { parse_view(arguments.up.empty() ? "y" : arguments.up); });
-  camera(arguments);
-  if (!arguments.frame) {
-    if (!arguments.frames) return;
-    throw Error("--frames", "says of how many, not which", "give --frame F as well");
-  }
-  const FrameRange range = frames_of(arguments);
-  if (*arguments.frame < range.first || *arguments.frame > range.last) {
-    throw Error(
-        "--frame",
-        fmt::format("{} is none of the frames {} to {}", *arguments.frame, range.first, range.last),
-        "give one of these, or other --frames");
-  }
-}
-
-namespace {
-
-std::vector<TrianglePair> found_by(const Record& record) {
-  std::vector<TrianglePair> out;
-  std::set_union(record.collisions.pairs.begin(), record.collisions.pairs.end(),
-                 record.collisions.neighbour_pairs.begin(), record.collisions.neighbour_pairs.end(),
-                 std::back_inserter(out));
-  return out;
-}
-
-std::string device_of(const Record& record) {
-  if (record.found.device.gl) return record.found.device.gl->renderer;
-  return record.found.device.cpu ? "cpu" : "none";
-}
-
-}  // namespace
-
-const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab) {
-  const std::vector<std::string> words = arguments.scene.words();
-  if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
-  // '\n' separates the parts: no name of a scene contains it.
-  std::string key = arguments.self ? "self\n" : "\n";
-  for (const std::string& word : words) key += word + "\n";
-  if (arguments.frame) {
-    const FrameRange range = frames_of(arguments);
-    key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
-  }
-  if (lab.progress()) lab.progress()("reading the scene");
-  return lab.scene(key, [&arguments] {
-    if (arguments.frame) {
-      FrameSource source(arguments.scene, frames_of(arguments), arguments.self);
-      return source.at(*arguments.frame);
-    }
-    Scene scene = load_scene(arguments.scene);
-    for (Object& object : scene.objects) object.self |= arguments.self;
-    return scene;
-  });
-}
-
-MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab) {
-  options.verify = false;
-  options.device = lab.device();
-  const Record record = run(scene, options, lab.session(), lab.progress());
-  const std::vector<TrianglePair>& truth = lab.truth().pairs;
-  const std::vector<TrianglePair> found = found_by(record);
-  const std::vector<std::uint32_t>& kept = record.found.triangles;
-  const std::vector<std::uint32_t> hit = members_of(truth);
-  MethodAnswer answer;
-  std::ranges::set_difference(truth, found, std::back_inserter(answer.missed));
-  std::ranges::set_difference(kept, hit, std::back_inserter(answer.idle));
-  answer.lost = members_of(answer.missed);
-  PanelResult& result = answer.result;
-  const std::string not_drawn = not_drawn_text(record);
-  result.title =
-      not_drawn.empty() ? panel_title(options) : method_title(options) + ", " + not_drawn;
-  result.drew = record.found.drew();
-  result.colliding = truth.size();
-  result.neighbours = truth.size() - without_neighbours(scene, lab.truth()).pairs.size();
-  result.missed = answer.missed.size();
-  result.missed_triangles = answer.lost.size();
-  result.kept = kept.size();
-  result.idle = answer.idle.size();
-  // As in `farcull run`, this does not depend on the probes of the device.
-  result.broken = guaranteed(record.options) && !answer.missed.empty();
-  result.device = device_of(record);
-  result.headline = headline_of(result);
-  return answer;
-}
-
-namespace {
-
 constexpr Rgba kPaper = {255, 255, 255};
-constexpr double kMargin = 0.04;     // around the scene, as a fraction of the picture's size
-constexpr double kZoomMargin = 0.1;  // around the collisions
+constexpr double kMargin = 0.04;     // margin around the scene, as a fraction of the picture's size
+constexpr double kZoomMargin = 0.1;  // margin around the collisions
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
@@ -341,6 +162,154 @@ Window window_of(const PictureArguments& arguments, const Scene& scene, const Tr
 }
 
 }  // namespace
+
+View camera(const PictureArguments& arguments) {
+  View view = parse_view(arguments.view.empty() ? kUsualView : arguments.view);
+  const Vec3 forward = view.rows.row(2);
+  Vec3 up = parse_view(arguments.up.empty() ? "y" : arguments.up).rows.row(2);
+  if (forward.cross(up).norm() < 1e-6) {
+    if (!arguments.up.empty()) {
+      throw Error("--up", "it is the direction that --view looks along",
+                  "give another axis to one of them");
+    }
+    up = Vec3(0, 0, forward[1] > 0 ? 1 : -1);
+  }
+  const Vec3 right = forward.cross(up).normalized();
+  view.rows << right.transpose(), right.cross(forward).transpose(), forward.transpose();
+  return view;
+}
+
+FrameRange frames_of(const PictureArguments& arguments) {
+  if (arguments.frames) return *arguments.frames;
+  const std::vector<std::string>& names = arguments.scene.names;
+  const bool motion = names.size() == 1 && is_builtin_scene(names.front());
+  if (motion) return {0, kUsualFrames - 1};
+  return {*arguments.frame, *arguments.frame};
+}
+
+std::string command_of(const PictureArguments& arguments) {
+  std::string out = "farcull picture";
+  const auto add = [&](const std::string& word) { out += " " + quoted(word); };
+  const auto option = [&](const std::string& name, const std::string& value) {
+    add(name);
+    add(value);
+  };
+  for (const std::string& word : arguments.scene.words()) add(word);
+  const RunOptions& first = arguments.panels.front();
+  if (arguments.panels.size() == 1) {
+    option("--method", to_string(first.method));
+    if (first.resolution > 0) option("--resolution", std::to_string(first.resolution));
+  } else {
+    std::string list;
+    for (const RunOptions& options : arguments.panels) {
+      list += (list.empty() ? "" : ",") + to_string(options.method);
+      if (options.resolution > 0) list += fmt::format(":{}", options.resolution);
+    }
+    option("--compare", list);
+  }
+  for (const RunOptions& options : arguments.panels) {
+    if (!fattens(options.method)) continue;
+    const std::string radius = radius_text(options.radius);
+    if (radius != "budget") option("--radius", radius);
+    if (options.offset != "obb") option("--offset", options.offset);
+    if (options.depth) option("--depth", *options.depth == DepthMode::fixed ? "fixed" : "fragment");
+    break;
+  }
+  if (!first.device.empty()) option("--device", first.device);
+  if (arguments.self) add("--self");
+  if (arguments.frame) {
+    const FrameRange range = frames_of(arguments);
+    option("--frame", std::to_string(*arguments.frame));
+    option("--frames", fmt::format("{}:{}", range.first, range.last));
+  }
+  if (!arguments.view.empty()) option("--view", arguments.view);
+  if (!arguments.up.empty()) option("--up", arguments.up);
+  if (arguments.zoom) add("--zoom");
+  option("--size", fmt::format("{}x{}", arguments.width, arguments.height));
+  return out;
+}
+
+void validate(const PictureArguments& arguments) {
+  if (arguments.panels.empty() || arguments.panels.size() > kMostPanels) {
+    throw Error("--compare", fmt::format("{} panels do not fit", arguments.panels.size()),
+                fmt::format("name 1 to {} methods", kMostPanels));
+  }
+  for (const int side : {arguments.width, arguments.height}) {
+    if (side >= 64 && side <= kMostPicture) continue;
+    throw Error("--size", fmt::format("{} px is outside 64 .. {}", side, kMostPicture),
+                "give the width and height of a panel in that range, as in 900x760");
+  }
+  for (const RunOptions& options : arguments.panels) validate(options);
+  as_option("--view", [&] { parse_view(arguments.view.empty() ? kUsualView : arguments.view); });
+  as_option("--up", [&] { parse_view(arguments.up.empty() ? "y" : arguments.up); });
+  camera(arguments);
+  if (!arguments.frame) {
+    if (!arguments.frames) return;
+    throw Error("--frames", "says of how many, not which", "give --frame F as well");
+  }
+  const FrameRange range = frames_of(arguments);
+  if (*arguments.frame < range.first || *arguments.frame > range.last) {
+    throw Error(
+        "--frame",
+        fmt::format("{} is none of the frames {} to {}", *arguments.frame, range.first, range.last),
+        "give one of these, or other --frames");
+  }
+}
+
+const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab) {
+  const std::vector<std::string> words = arguments.scene.words();
+  if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
+  // '\n' separates the parts: no name of a scene contains it.
+  std::string key = arguments.self ? "self\n" : "\n";
+  for (const std::string& word : words) key += word + "\n";
+  if (arguments.frame) {
+    const FrameRange range = frames_of(arguments);
+    key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
+  }
+  if (lab.progress()) lab.progress()("reading the scene");
+  return lab.scene(key, [&arguments] {
+    if (arguments.frame) {
+      FrameSource source(arguments.scene, frames_of(arguments), arguments.self);
+      return source.at(*arguments.frame);
+    }
+    Scene scene = load_scene(arguments.scene);
+    for (Object& object : scene.objects) object.self |= arguments.self;
+    return scene;
+  });
+}
+
+MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab) {
+  options.verify = false;
+  options.device = lab.device();
+  const Record record = run(scene, options, lab.session(), lab.progress());
+  const std::vector<TrianglePair>& truth = lab.truth().pairs;
+  std::vector<TrianglePair> found;
+  std::ranges::set_union(record.collisions.pairs, record.collisions.neighbour_pairs,
+                         std::back_inserter(found));
+  const std::vector<std::uint32_t>& kept = record.found.triangles;
+  const std::vector<std::uint32_t> hit = members_of(truth);
+  MethodAnswer answer;
+  std::ranges::set_difference(truth, found, std::back_inserter(answer.missed));
+  std::ranges::set_difference(kept, hit, std::back_inserter(answer.idle));
+  answer.lost = members_of(answer.missed);
+  PanelResult& result = answer.result;
+  const std::string not_drawn = not_drawn_text(record);
+  result.title =
+      not_drawn.empty() ? panel_title(options) : method_title(options) + ", " + not_drawn;
+  result.drew = record.found.drew();
+  result.colliding = truth.size();
+  result.neighbours = truth.size() - without_neighbours(scene, lab.truth()).pairs.size();
+  result.missed = answer.missed.size();
+  result.missed_triangles = answer.lost.size();
+  result.kept = kept.size();
+  result.idle = answer.idle.size();
+  // As in `farcull run`, this does not depend on the probes of the device.
+  result.broken = guaranteed(record.options) && !answer.missed.empty();
+  const UsedDevice& device = record.found.device;
+  result.device = device.gl ? device.gl->renderer : device.cpu ? "cpu" : "none";
+  result.headline = headline_of(result);
+  return answer;
+}
 
 PictureResult make_picture(const PictureArguments& arguments, MeasurementContext& lab) {
   validate(arguments);

@@ -1,16 +1,12 @@
-// Paints rectangles, rings and lettering into one image. Pango lays text out and cairo renders it
-// as coverage, which is blended in the colour of the style. Cairo also writes the PNG.
+// Paints rectangles, rings and text into an image, and writes it as PNG. Pango and cairo render a
+// text as coverage of pixels, which is blended in the colour of the text.
 #include <fmt/format.h>
 #include <pango/pangocairo.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <memory>
-#include <stdexcept>
 
-#include "core/base/error.h"
 #include "experiments/picture/panel.h"
 
 namespace farcull {
@@ -29,8 +25,8 @@ struct Free {
 template <class T>
 using Owned = std::unique_ptr<T, Free>;
 
-// The text in the style, without hinting, so that letters keep their shapes at every size and
-// place. A text that is wider than `room` px ends with an ellipsis.
+// The layout of a text. There is no hinting, so that letters keep their shapes at every size and
+// place.
 Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
   constexpr double kCapital = 1493.0 / 2048;  // height of a capital of DejaVu over the em
   const Owned<PangoContext> context(
@@ -70,24 +66,18 @@ void put(Image& sheet, const Image& picture, int left, int top) {
 }
 
 void draw_sign(Image& sheet, const LegendEntry& entry, int left, int top, int size) {
-  using enum LegendEntry::Sign;
-  if (entry.sign == box) fill(sheet, left, top, left + size, top + size, entry.colour);
-  if (entry.sign == ring)
+  if (entry.sign == LegendEntry::Sign::box)
+    fill(sheet, left, top, left + size, top + size, entry.colour);
+  else
     draw_ring(sheet, left + 0.5 * size, top + 0.5 * size, 0.42 * size, 0.14 * size, entry.colour);
-  if (entry.sign != ramp) return;
-  for (int x = 0; x < size; ++x) {
-    Rgba colour = entry.light;
-    blend(colour, entry.colour, (x + 0.5) / size);
-    fill(sheet, left + x, top, left + x + 1, top + size, colour);
-  }
 }
 
 void put(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-// A PNG chunk with a text, since cairo writes none. In iTXt, two flags, a language and a translated
-// keyword come before the text; all are empty here.
+// A PNG chunk with a text, which cairo does not write. In iTXt, two flags, a language and a
+// translated keyword stand before the text; they are empty here.
 std::string chunk_of(const std::string& key, const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
   const std::string body =
@@ -114,7 +104,7 @@ void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room) {
   const Owned<PangoLayout> layout = laid_out(text, style, room);
   PangoLayoutLine* const line = pango_layout_get_line_readonly(layout.get(), 0);
-  PangoRectangle ink;  // in px from the left end of the baseline
+  PangoRectangle ink;  // the inked area, px from the left end of the baseline
   pango_layout_line_get_extents(line, &ink, nullptr);
   pango_extents_to_pixels(&ink, nullptr);
   const double column = std::floor(x), row = std::floor(baseline);
@@ -167,12 +157,11 @@ void draw_ring(Image& image, double x, double y, double radius, double line, con
   }
 }
 
-double letter_height(int panel_width) { return std::clamp(panel_width / 52.0, 7.0, 64.0); }
-
 Image compose(const std::string& title, const std::string& subtitle,
               std::vector<SheetPanel>& panels, const std::string& small_print) {
   const int width = panels.front().image.width, height = panels.front().image.height;
-  const double letter = letter_height(width);
+  // The height of letters, px. They are legible even if the sheet is shown at half size.
+  const double letter = std::clamp(width / 52.0, 7.0, 64.0);
   const int line = static_cast<int>(std::lround(1.75 * letter)), margin = line;
   std::size_t entries = 0;
   for (const SheetPanel& panel : panels) entries = std::max(entries, panel.legend.size());

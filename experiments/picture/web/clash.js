@@ -1,5 +1,5 @@
-// The list of pairs, and what is shown of the chosen one: its two parts in two colours, the curve
-// in which they cross, and the other parts as ghosts. The address holds the chosen pair.
+// The list of pairs. Of the chosen pair the two parts are shown in two colours, with the curve in which
+// they cross; the other parts are ghosts. The address of the page holds the chosen pair.
 
 const MOST_LISTED = 1000;
 const state = { row: -1, search: "", ghosts: true, through: false };
@@ -52,16 +52,12 @@ function showRows() {
 
 function showLegend() {
   const row = about.rows[state.row];
-  const line = (colour, text) => {
-    const item = element("li"), box = element("i");
-    box.style.background = colour;
-    item.append(box, text);
-    return item;
-  };
-  const items = row === undefined ? [line(css(about.colours.idle), "in a pair that clashes, is contained or unknown"), line(css(about.colours.objects[0]), "the other parts")] : [line(css(about.colours.idle), nameOf(row.a)), line(css(about.colours.objects[0]), nameOf(row.b))];
-  if (row && row.segments[1] > 0) items.push(line("#dc005a", row.curve > 0 ? "the surfaces cross" : "between two nearest points"));
+  const texts = row ? [nameOf(row.a), nameOf(row.b)]
+    : ["in a pair that clashes, is contained or unknown", "the other parts"];
+  const items = [about.colours.idle, about.colours.objects[0]].map((colour, k) => legendLine(css(colour), texts[k]));
+  if (row && row.segments[1] > 0)
+    items.push(legendLine("#dc005a", row.curve > 0 ? "the surfaces cross" : "between two nearest points"));
   byId("legend").replaceChildren(...items);
-  byId("legend").hidden = items.length === 0;
 }
 
 // ---- the scene ----------------------------------------------------------------------------------
@@ -70,9 +66,9 @@ const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object
 const larger = (row) => (sizeOf(row.a) > sizeOf(row.b) ? row.a : row.b);
 const outerOf = (row) => (row.inner === null ? larger(row) : row.inner === row.a ? row.b : row.a);
 
-// If no pair is chosen, parts that clash or may contain each other have the first colour. The parts
-// of a chosen pair are solid; but if one contains the other, the outer one is a ghost, and else the
-// larger one is a ghost if the reader wants to see through it.
+// If no pair is chosen, parts that clash or may contain each other have the first colour. The parts of
+// a chosen pair are solid, with one exception: a part that contains the other is a ghost, or the larger
+// part if the reader wants to see through it.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
@@ -136,13 +132,13 @@ function chooseRow(k) {
   for (const button of byId("rows").querySelectorAll("button")) {
     const chosen = Number(button.dataset.row) === k;
     button.setAttribute("aria-current", String(chosen));
-    // The list alone is scrolled: on a narrow screen the page would leave the scene.
+    // Scrolls the list, not the page, which on a narrow screen would move the scene out of sight.
     if (chosen) byId("rows").scrollTop = button.offsetTop - 40;
   }
   showParts();
   showLegend();
   if (view && k >= 0) flyTo(about.rows[k]);
-  writeAddress();
+  history.replaceState(null, "", k < 0 ? "#" : `#row=${k}`);
 }
 
 function go(by) {
@@ -157,10 +153,6 @@ function choose(triangle) {
   if (triangle < 0) return;
   const o = frame.owner[triangle], numbers = listed().filter((k) => about.rows[k].a === o || about.rows[k].b === o);
   if (numbers.length > 0) chooseRow(numbers[(numbers.indexOf(state.row) + 1) % numbers.length]);
-}
-
-function writeAddress() {
-  history.replaceState(null, "", state.row < 0 ? "#" : `#row=${state.row}`);
 }
 
 function readAddress() {
@@ -183,20 +175,18 @@ function onKey(event) {
   event.preventDefault();
 }
 
-function connect() {
-  const on = (id, event, act) => byId(id).addEventListener(event, act);
-  on("search", "input", (e) => { state.search = e.target.value.trim().toLowerCase(); showRows(); });
-  on("ghosts", "change", (e) => { state.ghosts = e.target.checked; showParts(); });
-  on("through", "change", (e) => { state.through = e.target.checked; showParts(); });
-  on("explode", "input", (e) => {
-    byId("explode-value").textContent = `${e.target.value} %`;
-    if (!view) return;
-    view.uniforms.explode.value = e.target.value / 100;
-    showParts();
-  });
-  on("reset", "click", () => { chooseRow(-1); if (view) resetView(); });
-  on("licence-button", "click", () => byId("licence").showModal());
-  on("controls", "submit", (e) => e.preventDefault());
+function connectControls() {
+  connect([
+    ["search", "input", (e) => { state.search = e.target.value.trim().toLowerCase(); showRows(); }],
+    ["ghosts", "change", (e) => { state.ghosts = e.target.checked; showParts(); }],
+    ["through", "change", (e) => { state.through = e.target.checked; showParts(); }],
+    ["explode", "input", (e) => {
+      byId("explode-value").textContent = `${e.target.value} %`;
+      if (!view) return;
+      view.uniforms.explode.value = e.target.value / 100;
+      showParts();
+    }],
+    ["reset", "click", () => { chooseRow(-1); if (view) resetView(); }]]);
   document.addEventListener("keydown", onKey);
   window.addEventListener("hashchange", readAddress);
 }
@@ -207,20 +197,17 @@ async function start() {
   byId("headline").textContent = `${digits.format(about.examined)} of ${digits.format(about.asked)} pairs of parts examined` +
     ["", about.clean ? "clean" : countsOf(about.rows)].filter((part, k) => k === 0 || part).join("; ");
   byId("about").textContent = `farcull ${about.commit.slice(0, 10)}.`;
-  byId("licence-text").textContent = byId("three-licence").textContent.trim();
   showRows();
   showLegend();
-  connect();
+  connectControls();
   try {
     view = new SceneView(byId("canvas"), about);
     frame = await loadFrame();
     ends = await numbersOf(about.segments);
-    view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
+    view.setFrame(frame);
     connectCanvas();
-    resetView();
     showParts();
     readAddress();
-    view.onDraw = markReady;
   } catch (error) {
     standIn(`${error.message}`);
     document.documentElement.dataset.ready = "0";

@@ -1,6 +1,5 @@
 // The controls of the page: the answer, the visible parts of the scene, and the clicked triangle.
 
-
 // ---- state --------------------------------------------------------------------------------------
 
 const methods = [...new Set(about.steps.map((step) => step.method))];
@@ -8,9 +7,7 @@ const state = { method: methods[0], resolution: Infinity, hidden: new Set(), axi
   triangle: -1 };
 let view = null, answer = null, loading = 0;
 
-function stepsOf(method) {
-  return about.steps.filter((step) => step.method === method);
-}
+const stepsOf = (method) => about.steps.filter((step) => step.method === method);
 
 // The step of the state, at the resolution nearest to the requested one.
 function currentStep() {
@@ -38,12 +35,7 @@ function showLegend() {
       `missed: ${counted(step.missedPairs, "pair", "pairs")} of ${counted(step.missedTriangles, "triangle", "triangles")}`]);
   }
   if (step.culls) rows.push([idle, `kept, collide with nothing: ${counted(step.idle, "triangle", "triangles")}`]);
-  byId("legend").replaceChildren(...rows.map(([colour, text]) => {
-    const row = element("li"), box = element("i");
-    box.style.background = css(colour);
-    row.append(box, text);
-    return row;
-  }));
+  byId("legend").replaceChildren(...rows.map(([colour, text]) => legendLine(css(colour), text)));
 }
 
 // The pairs of the chosen triangle, each a button that chooses the other triangle.
@@ -152,8 +144,7 @@ function showControls() {
   }
 }
 
-// Loads and shows the answer for the state. If another answer was requested meanwhile, shows that
-// one.
+// Loads and shows the answer for the state, unless another answer was requested meanwhile.
 async function update() {
   const turn = ++loading;
   const step = currentStep();
@@ -198,7 +189,7 @@ function setResolution(by) {
   update();
 }
 
-// Chooses the next missed triangle after the chosen one; a colliding one if none is missed.
+// Chooses the missed triangle after the chosen one; if none is missed, the colliding one after it.
 function next() {
   let first = -1, after = -1;
   const any = answer.step.missedPairs === 0;
@@ -224,22 +215,17 @@ function fillPage() {
   const longest = Math.max(...about.hi.map((x, k) => x - about.lo[k]));
   byId("rounding").textContent = `${Number((longest / 65535).toPrecision(2))} along the longest side of the scene, ` +
     "1/65,535 of it,";
-  byId("licence-text").textContent = byId("three-licence").textContent.trim();
 }
 
 function connectControls() {
-  const on = (id, event, act) => byId(id).addEventListener(event, act);
-  on("method", "change", (e) => { state.method = e.target.value; update(); });
-  on("resolution", "input", (e) => { state.resolution = stepsOf(state.method)[e.target.value].resolution; update(); });
-  on("axis", "change", (e) => { state.axis = e.target.value; showControls(); });
-  on("cut", "input", (e) => { state.cut = Number(e.target.value); showControls(); });
-  on("side", "change", (e) => { state.side = e.target.checked; showControls(); });
-  on("reset", "click", resetView);
-  on("show-all", "click", showAll);
-  on("hide-idle", "click", showColliding);
-  on("help", "click", () => byId("keys").showModal());
-  on("licence-button", "click", () => byId("licence").showModal());
-  on("controls", "submit", (e) => e.preventDefault());
+  connect([
+    ["method", "change", (e) => { state.method = e.target.value; update(); }],
+    ["resolution", "input", (e) => { state.resolution = stepsOf(state.method)[e.target.value].resolution; update(); }],
+    ["axis", "change", (e) => { state.axis = e.target.value; showControls(); }],
+    ["cut", "input", (e) => { state.cut = Number(e.target.value); showControls(); }],
+    ["side", "change", (e) => { state.side = e.target.checked; showControls(); }],
+    ["reset", "click", resetView], ["show-all", "click", showAll], ["hide-idle", "click", showColliding],
+    ["help", "click", () => byId("keys").showModal()]]);
 }
 
 const KEYS = {
@@ -270,7 +256,7 @@ function onKey(event) {
   event.preventDefault();
 }
 
-// Shows the flat picture in place of the scene, and why.
+// Shows the flat picture in place of the scene, and the reason.
 function standIn(why) {
   document.documentElement.classList.add("flat");
   byId("trouble").hidden = false;
@@ -292,18 +278,12 @@ async function start() {
     standIn(error.message);
   }
   frame = await loadFrame();
-  if (view) view.setFrame(frame.corners, frame.positions, frame.owner, frame.objects);
+  if (view) view.setFrame(frame);
   showObjects();
   await update();
   connectControls();
   document.addEventListener("keydown", onKey);
-  if (view) {
-    connectCanvas();
-    resetView();
-    view.onDraw = markReady;
-  } else {
-    markReady();
-  }
+  if (view) connectCanvas(); else markReady();
 }
 
 // For tests and the console.

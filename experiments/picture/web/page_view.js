@@ -1,7 +1,7 @@
-// Unpacks the scene of the page, and draws it with three.js and WebGL 2. Every triangle has its own
-// three corners, so that gl_VertexID / 3 is its number. Two textures hold what may change: one byte
-// of state per triangle, and a place per object. The unit of length is half the largest extent of
-// the scene's box; the middle of the box is the origin.
+// Unpacks the scene of a page, and draws it with three.js and WebGL 2. Every triangle has three corners
+// of its own, so that gl_VertexID / 3 is its number. Two textures hold what may change: one byte of
+// state for each triangle, and a place for each object. The unit of length is half the largest extent
+// of the scene's box; the middle of the box is the origin.
 
 const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
@@ -14,6 +14,22 @@ function element(tag, text, properties) {
 }
 
 function css(colour) { return `rgb(${colour.join(", ")})`; }
+
+// A line of the legend: a box of this colour, and a text.
+function legendLine(colour, text) {
+  const line = element("li"), box = element("i");
+  box.style.background = colour;
+  line.append(box, text);
+  return line;
+}
+
+// Listens to events of the controls. Each row: the id of a control, the event, and the action.
+function connect(rows) {
+  const all = [...rows, ["licence-button", "click", () => byId("licence").showModal()],
+    ["controls", "submit", (e) => e.preventDefault()]];
+  for (const [id, event, act] of all) byId(id).addEventListener(event, act);
+  byId("licence-text").textContent = byId("three-licence").textContent.trim();
+}
 
 const REST = 0, IDLE = 1, COLLIDES = 2, MISSED = 4, CHOSEN = 8, PARTNER = 16;
 const STATE_WIDTH = 2048, OBJECT_WIDTH = 256;
@@ -66,7 +82,7 @@ flat in int shaded;
 flat in int number;
 flat in int ghost;
 out vec4 colour;
-// Over the left shoulder of who looks, as in the flat picture.
+// The light comes over the viewer's left shoulder, as in the flat picture.
 const vec3 kLight = vec3(-0.45, 0.60, 0.66);
 void main() {
   if (dot(cut.xyz, placed) > cut.w) discard;
@@ -144,7 +160,7 @@ class SceneView {
 
   // corners: three vertex numbers for each triangle; positions: all x, all y, all z, 0 to 65535;
   // owner: the object of each triangle; objects: [name, first, count].
-  setFrame(corners, positions, owner, objects) {
+  setFrame({ corners, positions, owner, objects }) {
     const triangles = owner.length, vertices = positions.length / 3;
     const array = new Uint16Array(12 * triangles);
     const box = objects.map(() => new THREE.Box3());
@@ -173,8 +189,8 @@ class SceneView {
     this.setIndices();
   }
 
-  // An exploded view moves each object away from the middle of the scene; objects in the middle
-  // move in directions of their own.
+  // Sets the places to which an exploded view moves the objects: away from the middle of the scene.
+  // Objects in the middle move in different directions.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
     const data = new Float32Array(4 * rows * OBJECT_WIDTH);
@@ -200,13 +216,13 @@ class SceneView {
     this.ask();
   }
 
-  // A ghost is seen through, and cannot be picked.
+  // Makes an object a ghost: the reader sees through it, and cannot pick it.
   ghost(object, ghost, hidden) {
     this.places.image.data[4 * object + 3] = hidden ? 1 : ghost ? 0.25 : 0;
     this.places.needsUpdate = true;
   }
 
-  // Sets the state of every triangle, and with it the triangles that are drawn a second time.
+  // Sets the state of every triangle, which decides what is drawn over the scene.
   setStates(states) {
     this.states.image.data.set(states);
     this.states.needsUpdate = true;
@@ -221,8 +237,8 @@ class SceneView {
     return geometry;
   }
 
-  // The corners of the triangles whose state has one of the bits: those of their faces or of their
-  // edges, or one corner of each triangle.
+  // The corners of the faces, edges or points of all triangles whose state has one of the bits. A
+  // triangle has one point, its first corner.
   indexOf(bits, kind) {
     const data = this.states.image.data, out = [];
     for (let t = 0; t < this.triangles; ++t) {
@@ -258,13 +274,13 @@ class SceneView {
     };
     add(new THREE.Mesh(this.geometry(null), this.materials[0]), 0);
     some(COLLIDES, 1, ["faces"], 1);
-    // Also draws edges and a point, so that a miss is visible however small its triangle is.
+    // Edges and a point make a miss visible, however small its triangle is.
     some(MISSED, 2, ["faces", "edges", "points"], 2);
     some(PARTNER, 3, ["faces", "edges"], 5);
     some(CHOSEN, 3, ["faces", "edges", "points"], 7);
   }
 
-  // Looks from the direction `towards` (from the middle to the eye), so that all of the points fit.
+  // Looks along the direction from the eye to the middle, -towards, so that all of the points fit.
   fit(points, towards) {
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(towards).multiplyScalar(30);
@@ -274,9 +290,7 @@ class SceneView {
     const box = new THREE.Box3();
     for (const p of points) box.expandByPoint(p.clone().applyMatrix4(inverse));
     const middle = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
-    const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
-    const up = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
-    const move = right.multiplyScalar(middle.x).add(up.multiplyScalar(middle.y));
+    const move = this.axis(0).multiplyScalar(middle.x).add(this.axis(1).multiplyScalar(middle.y));
     this.controls.target.copy(move);
     this.camera.position.add(move);
     const [width, height] = this.size();
@@ -321,11 +335,7 @@ class SceneView {
 
   // Moves the view, without turning it, so that the triangle is in the middle.
   centre(triangle) {
-    const move = this.middle(triangle).sub(this.controls.target);
-    this.controls.target.add(move);
-    this.camera.position.add(move);
-    this.controls.update();
-    this.ask();
+    this.shift(this.middle(triangle).sub(this.controls.target));
   }
 
   size() {
@@ -359,10 +369,14 @@ class SceneView {
 
   // Moves the view by fractions of its height.
   move(right, up) {
-    const by = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0)
-      .multiplyScalar(2 * right / this.camera.zoom);
-    by.add(new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1)
-      .multiplyScalar(2 * up / this.camera.zoom));
+    const by = this.axis(0).multiplyScalar(2 * right / this.camera.zoom);
+    this.shift(by.add(this.axis(1).multiplyScalar(2 * up / this.camera.zoom)));
+  }
+
+  // The direction to the right (0) or upwards (1) in the picture.
+  axis(k) { return new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k); }
+
+  shift(by) {
     this.controls.target.add(by);
     this.camera.position.add(by);
     this.controls.update();
@@ -375,7 +389,7 @@ class SceneView {
     this.ask();
   }
 
-  // Requests one draw before the next refresh of the screen, however often it is called.
+  // Asks for a draw before the next refresh of the screen: one draw for any number of calls.
   ask() {
     if (this.asked) return;
     this.asked = true;
@@ -384,7 +398,7 @@ class SceneView {
 
   draw() {
     this.asked = false;
-    // Collisions lie on surfaces and would flicker with them, so they are drawn 2 px nearer.
+    // Collisions lie on the surfaces, and are drawn 2 px nearer, since both would flicker.
     this.uniforms.lift.value = 4 / (this.size()[1] * this.camera.zoom);
     this.renderer.setClearColor(this.paper, 1);
     this.renderer.render(this.scene, this.camera);
@@ -413,8 +427,8 @@ class SceneView {
 
 // ---- the camera and the pointer ----------------------------------------------------------------
 
-// cameraText() is the place of the camera; `fitted` is the place that shows everything. When the
-// window is resized, the view is fitted again if the reader has not moved the camera.
+// cameraText() is the place of the camera; `fitted` is its place after resetView(). When the window is
+// resized, the view is reset if the reader has not moved the camera.
 const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
 let fitted = "";
 
@@ -445,7 +459,7 @@ function collidingCorners() {
   return out;
 }
 
-// A press and a release at one place choose a triangle; anything else was a drag.
+// Shows the scene. A press and a release at one place choose a triangle; anything else is a drag.
 function connectCanvas() {
   const canvas = byId("canvas");
   let down = null;
@@ -465,6 +479,8 @@ function connectCanvas() {
   new ResizeObserver(onResize).observe(byId("stage"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showPaper);
   showPaper();
+  resetView();
+  view.onDraw = markReady;
 }
 
 // Notes when the page was first drawn, for tests.
@@ -473,7 +489,7 @@ function markReady() {
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
 }
 
-// The background of the scene is that of the page, light or dark.
+// Gives the scene the background of the page, light or dark.
 function showPaper() {
   if (!view) return;
   view.paper = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim());
@@ -504,8 +520,7 @@ async function numbersOf(name) {
   return out;
 }
 
-// All data of the scene.
-let frame = null;
+let frame = null;  // all data of the scene
 
 async function loadFrame() {
   const { objects, triangles, ...entry } = about.frame;
