@@ -84,8 +84,7 @@ void confine_to_cores(unsigned threads) {
 
 std::string cpu_model() { return cpuinfo({"model name"}); }
 
-// The key is "flags" on x86 and "Features" on Arm.
-std::string cpu_features() { return cpuinfo({"flags", "Features"}); }
+std::string cpu_features() { return cpuinfo({"flags", "Features"}); }  // x86, Arm
 
 PeakMemory::PeakMemory() {
   ::malloc_trim(0);
@@ -101,7 +100,8 @@ std::optional<double> PeakMemory::grown_mib() const {
 
 LoadMeter::LoadMeter() : before_(read()) {}
 
-// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks. Guests are in user.
+// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks; "user" includes
+// guests.
 std::optional<LoadMeter::Ticks> LoadMeter::read() {
   cpu_set_t mine;
   if (sched_getaffinity(0, sizeof mine, &mine) != 0) return std::nullopt;
@@ -132,7 +132,7 @@ std::optional<LoadMeter::Ticks> LoadMeter::read() {
   return out;
 }
 
-// At each tick a processor is busy or not. So the number of busy ones among n ticks has a standard
+// At each tick a processor is busy or not. So the number of busy ticks among n has a standard
 // deviation of at most sqrt(n) / 2.
 std::optional<Load> LoadMeter::now() const {
   const std::optional<Ticks> after = read();
@@ -166,7 +166,7 @@ TimingLock::TimingLock(const std::string& path) {
   ::fchmod(file_, 0666);
   const std::string own = std::to_string(::getpid());
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // No error: the number is only for the message above.
+    // This is no error, since the number is only for the message above.
   }
 }
 

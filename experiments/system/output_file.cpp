@@ -4,6 +4,7 @@
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,9 +12,6 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
-#include <csignal>
-#include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -22,78 +20,36 @@
 
 namespace farcull {
 
-// A signal handler writes the message about an interrupted run, so this code allocates no memory
-// and takes no lock.
-
 namespace {
 
-// Read by the signal handler, so only lock-free atomics.
-std::atomic<long> items_done = 0, items_wanted = 0, files_written = 0;
-static_assert(std::atomic<long>::is_always_lock_free);
-std::atomic<const char*> items = "", how_it_ends = "";
+// The message of the signal handler. It is made beforehand, since a handler must not allocate
+// memory. There are two buffers, since the handler may read one while the other is filled.
+std::array<std::array<char, 512>, 2> buffers;
+std::atomic<const char*> message = "farcull: interrupted; no file was written\n";
 static_assert(std::atomic<const char*>::is_always_lock_free);
-volatile std::sig_atomic_t on_terminal = 0;
 
-constexpr std::size_t kLine = 240;
+long items_done = 0, items_wanted = 0, files_written = 0;
+const char *items = "", *how_it_ends = "";
+bool on_terminal = false;
 
-std::size_t append(char* text, std::size_t at, const char* more) {
-  while (*more != '\0' && at < kLine) text[at++] = *more++;
-  return at;
-}
-
-std::size_t append(char* text, std::size_t at, long number) {
-  char digits[24];
-  std::size_t n = 0;
-  do {
-    digits[n++] = static_cast<char>('0' + number % 10);
-    number /= 10;
-  } while (number > 0);
-  while (n > 0 && at < kLine) text[at++] = digits[--n];
-  return at;
+void make_message() {
+  const std::string how_far =
+      items_wanted > 0
+          ? fmt::format(": after {} of {} {}; {}", items_done, items_wanted, items, how_it_ends)
+      : files_written > 0 ? fmt::format("; files that are written: {}", files_written)
+                          : "; no file was written";
+  std::array<char, 512>& buffer = buffers[message == buffers[0].data() ? 1 : 0];
+  *fmt::format_to_n(buffer.data(), buffer.size() - 1, "{}farcull: interrupted{}\n",
+                    on_terminal ? "\r\033[K" : "", how_far)
+       .out = '\0';
+  message = buffer.data();
 }
 
 extern "C" void say_how_far(int signal) {
-  char text[kLine + 1];
-  std::size_t size = append(text, 0, on_terminal ? "\r\033[K" : "");
-  size = append(text, size, "farcull: interrupted");
-  if (items_wanted > 0) {
-    size = append(text, size, ": after ");
-    size = append(text, size, items_done.load());
-    size = append(text, size, " of ");
-    size = append(text, size, items_wanted.load());
-    size = append(text, size, " ");
-    size = append(text, size, items.load());
-    size = append(text, size, "; ");
-    size = append(text, size, how_it_ends.load());
-  } else if (files_written > 0) {
-    size = append(text, size, "; files that are written: ");
-    size = append(text, size, files_written.load());
-  } else {
-    size = append(text, size, "; no file was written");
-  }
-  text[size++] = '\n';
-  (void)!::write(STDERR_FILENO, text, size);
+  const char* const text = message;
+  (void)!::write(STDERR_FILENO, text, std::strlen(text));
   SignalGuard::end_by(signal);
 }
-
-void note(long wanted, const char* what, const char* end, bool terminal) {
-  items_done = 0;
-  items_wanted = wanted;
-  items = what;
-  how_it_ends = end;
-  on_terminal = terminal;
-}
-
-}  // namespace
-
-Interruptible::Interruptible(long wanted, const char* what, const char* end, bool terminal)
-    : signals_((note(wanted, what, end, terminal), say_how_far)) {}
-
-Interruptible::Interruptible() : Interruptible(0, "", "", is_terminal(stderr)) {}
-Interruptible::~Interruptible() { items_wanted = 0; }
-void Interruptible::done(long count) { items_done = count; }
-
-namespace {
 
 constexpr const char* kStdoutRemedy = "let it go to a place that takes it, such as a file";
 constexpr const char* kPathRemedy = "give a path in a folder with room that you may write to";
@@ -105,13 +61,13 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// What a path leads to. A regular file or a new one is written beside it and renamed. Anything else
-// is `direct`: the text is written to it as it comes.
+// The file that a path leads to. A regular file, or a new one, is written beside it and renamed.
+// Anything else is `direct`: the text is written to it as it comes.
 struct Target {
   std::string path;
   bool exists = false;
   bool direct = false;
-  mode_t mode = 0;  // of the file that exists
+  mode_t mode = 0;  // mode of the file that exists
 };
 
 Target target_of(const std::string& path) {
@@ -133,11 +89,11 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// Path of the file that is being written; empty between files.
+// The path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// The path of the half-written file: in the same folder, the file's name with an ending. The name
-// is cut if it is too long for the file system, but not within a UTF-8 character.
+// The path of the half-written file for `path`: in the same folder, with an ending. The name is cut
+// if it is too long for the file system, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
@@ -155,24 +111,26 @@ extern "C" void remove_half_written(int signal) {
 
 }  // namespace
 
-// A file that is being written. The destructor removes it unless put() renamed it into place; the
-// handler of a signal that ends the program removes it too. One at a time.
+// The name of a file that is being written. The destructor removes the file unless put() renamed
+// it; the handler of a signal that ends the program removes it too. One at a time.
 class HalfWritten {
  public:
-  // Precondition: the path is shorter than half_written.
+  // Precondition: the path fits into half_written.
   explicit HalfWritten(const std::string& path) : name_(path), signals_(remove_half_written) {}
   ~HalfWritten() {
     if (!in_place_) ::unlink(half_written);
   }
 
   int put(const std::string& place) {
-    in_place_ = std::rename(half_written, place.c_str()) == 0;
-    files_written += in_place_;
-    return in_place_ ? 0 : errno;
+    if (std::rename(half_written, place.c_str()) != 0) return errno;
+    in_place_ = true;
+    ++files_written;
+    make_message();
+    return 0;
   }
 
  private:
-  // Sets half_written before the handler is installed, and clears it after the handler is gone.
+  // Sets half_written before the handler is installed, and clears it after the handler is removed.
   struct Name {
     explicit Name(const std::string& path) {
       path.copy(half_written, path.size());
@@ -186,17 +144,6 @@ class HalfWritten {
 };
 
 namespace {
-
-// Writes all of the text and closes the file. Returns 0 or the errno of the first failure.
-int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
-  int failure = 0;
-  if (std::fwrite(text.data(), 1, text.size(), file) != text.size() || std::fflush(file) != 0 ||
-      (to_disk && ::fsync(::fileno(file)) != 0)) {
-    failure = errno;
-  }
-  if (std::fclose(file) != 0 && failure == 0) failure = errno;
-  return failure;
-}
 
 // Writes all of the text, from the byte `at` of the file if `at` is not negative. Returns 0 or the
 // errno of the first failure.
@@ -212,7 +159,31 @@ int write_all(int file, const std::string& text, long long at) {
   return 0;
 }
 
+void note(long wanted, const char* what, const char* end, bool terminal) {
+  items_done = 0;
+  items_wanted = wanted;
+  items = what;
+  how_it_ends = end;
+  on_terminal = terminal;
+  make_message();
+}
+
 }  // namespace
+
+Interruptible::Interruptible(long wanted, const char* what, const char* end, bool terminal)
+    : signals_((note(wanted, what, end, terminal), say_how_far)) {}
+
+Interruptible::Interruptible() : Interruptible(0, "", "", is_terminal(stderr)) {}
+
+Interruptible::~Interruptible() {
+  items_wanted = 0;
+  make_message();
+}
+
+void Interruptible::done(long count) {
+  items_done = count;
+  make_message();
+}
 
 void check_output(const std::string& path) {
   if (path == "-") {
@@ -232,35 +203,8 @@ void check_output(const std::string& path) {
     refuse(path, errno);
 }
 
-int replace_file(const std::string& path, const std::string& text) {
-  const std::string half = beside(path);
-  if (half.size() >= sizeof half_written) return ENAMETOOLONG;
-  struct stat status = {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
-  HalfWritten part(half);
-  std::FILE* file = std::fopen(half.c_str(), "wb");
-  if (file == nullptr) return errno;
-  if (exists) ::fchmod(::fileno(file), status.st_mode & 07777);
-  const int failure = write_and_close(file, text, true);
-  return failure != 0 ? failure : part.put(path);
-}
-
 void write_output(const std::string& path, const std::string& text) {
-  check_output(path);
-  if (path == "-") {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-      refuse(path, errno);
-    return;
-  }
-  const Target target = target_of(path);
-  int failure = 0;
-  if (target.direct) {
-    std::FILE* file = std::fopen(path.c_str(), "wb");
-    failure = file == nullptr ? errno : write_and_close(file, text, false);
-  } else {
-    failure = replace_file(target.path, text);
-  }
-  if (failure != 0) refuse(path, failure);
+  write_output(path, [&](const TextSink& sink) { sink(text); });
 }
 
 StreamedOutput::StreamedOutput(const std::string& path) : path_(path) {
@@ -288,9 +232,9 @@ void StreamedOutput::add(std::string_view text) {
 }
 
 void StreamedOutput::put() {
-  int failure = write_and_close(std::exchange(file_, nullptr), "", true);
-  if (failure == 0) failure = part_->put(place_);
-  if (failure != 0) refuse(path_, failure);
+  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) refuse(path_, errno);
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) refuse(path_, errno);
+  if (const int failure = part_->put(place_)) refuse(path_, failure);
 }
 
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write) {
@@ -324,7 +268,7 @@ GrowingOutput::~GrowingOutput() {
   try {
     finish();
   } catch (const Error&) {
-    // A destructor must not throw. A regular file has its end already; only a stream may lack it.
+    // A destructor must not throw. Only a stream may lack its end.
   }
   if (file_ >= 0) ::close(file_);
 }
@@ -355,7 +299,8 @@ void GrowingOutput::add(const std::string& text, const std::string& end) {
     return;
   }
   if (const int failure = write_all(file_, text + end, kept_)) {
-    // The file already has the bytes of the previous end, so they can be restored on a full disk.
+    // Restores the previous end. Its bytes are in the file already, so a full disk has room for
+    // them.
     (void)write_all(file_, end_, kept_);
     (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
     refuse(path_, failure);
@@ -379,8 +324,8 @@ void GrowingOutput::finish() {
 void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // The next file that is opened would get the number of a closed stream, and output for the stream
-  // would be written into that file. So /dev/null takes the number, opened such that its use fails.
+  // A file that is opened would get the number of a closed stream, and output for the stream would
+  // be written into that file. So /dev/null takes the number, opened such that its use fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

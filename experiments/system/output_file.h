@@ -1,5 +1,5 @@
-// Files that appear whole or not at all, written at once or piece by piece; texts that grow during
-// a long run and are whole after each addition; and signals that end the program.
+// Files that appear whole or not at all; texts that grow during a long run and are whole after each
+// addition; and signals that end the program.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace farcull {
 
-/// Throws Error naming the path if write_output() would fail for a reason that is known beforehand:
-/// no such folder, a directory, no permission, a name or path that is too long, a closed standard
-/// output. Called before a long run, so that the run does not fail at its end.
+/// Throws Error naming the path if write_output() is known to fail: no such folder, a directory, no
+/// permission, a name or path that is too long, a closed standard output. Call it before a long
+/// run, so that the run does not fail at its end.
 void check_output(const std::string& path);
 
 /// Writes the text to a file beside the path and renames that file; "-" is standard output. A
@@ -26,31 +26,25 @@ void check_output(const std::string& path);
 /// SIGPIPE and SIGXFSZ are ignored (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
-/// Takes a text part by part.
+/// Takes the parts of a text in order.
 using TextSink = std::function<void(std::string_view)>;
-/// write_output() for a long text: write(sink) passes the text to the sink part by part. An
-/// exception of `write` is passed on, and an existing file stays as it was.
+/// write_output() for a long text, which write(sink) passes to the sink part by part. If `write`
+/// throws, the exception is passed on, and an existing file stays as it was.
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 
 /// Writes help, or another text whose reader may stop early (help run | head), to standard output:
 /// a closed pipe is no error. Throws Error as write_output() if the disk refuses.
 void write_help(const std::string& text);
 
-/// Writes the text to a new file beside `path`, an absolute or relative path that is no symbolic
-/// link, and renames it into place. The new file gets the permissions of a file that it replaces.
-/// Returns 0 or the errno of the first failure. As with write_output(), no half-written file is
-/// left. Only one call at a time in a process.
-int replace_file(const std::string& path, const std::string& text);
-
-/// Call once, at the start of the program. Afterwards a full disk and a closed pipe give an error
-/// instead of a signal, and no file that is opened gets the number of a closed standard stream.
+/// Call once, at the start of the program. Afterwards a full disk or a closed pipe gives an error,
+/// not a signal, and no file that is opened gets the number of a closed standard stream.
 void prepare_output();
 
 /// A text that grows by additions and has an end, such as the last bracket of a JSON array. After
-/// each addition the file holds all additions and the end, so the text is whole whenever the
-/// program ends. Only a kill or a crash of the machine during an addition can cut the text short.
-/// The first addition replaces the file as write_output() does; until then the old file stays.
-/// Standard output, devices and pipes take the additions as they come, and the end once.
+/// each addition the file holds all additions and the end; only a kill or a crash of the machine
+/// during an addition can cut the text short. The first addition replaces the file as
+/// write_output() does. Standard output, devices and pipes take the additions as they come, and the
+/// end once.
 class GrowingOutput {
  public:
   /// Nothing is written before the first addition.
@@ -59,8 +53,8 @@ class GrowingOutput {
   GrowingOutput(const GrowingOutput&) = delete;
   GrowingOutput& operator=(const GrowingOutput&) = delete;
 
-  /// Adds `text`; `end` replaces the previous end. Throws Error as write_output() does; a
-  /// file then holds what it held before.
+  /// Adds `text`; `end` replaces the previous end. Throws Error as write_output() does; a file is
+  /// then unchanged.
   void add(const std::string& text, const std::string& end);
   /// Ends the text: no addition may follow. The destructor calls it too, and ignores an Error.
   void finish();
@@ -77,7 +71,7 @@ class HalfWritten;
 
 /// Writes a file beside the path; put() renames it into place. Without put() the file is removed,
 /// even if SIGINT, SIGTERM or SIGHUP ends the program. Only one may exist in a process, and
-/// write_output() must not be called meanwhile. A symbolic link stays and its file is replaced.
+/// write_output() must not be called meanwhile. A symbolic link stays, and its file is replaced.
 class StreamedOutput {
  public:
   /// Throws Error naming the path if it is standard output, a device or a pipe, which cannot be
@@ -99,9 +93,6 @@ class StreamedOutput {
   std::unique_ptr<HalfWritten> part_;
   std::FILE* file_ = nullptr;
 };
-
-// Signals that end the program: a handler that stays as long as an object lives, and the line that
-// a long run prints when a signal ends it.
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP call the handler. Signals that the caller of the
 /// program ignores (nohup) stay ignored. The destructor restores the previous handlers.
@@ -135,15 +126,14 @@ class SignalGuard {
 };
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP print one line on standard error, "farcull:
-/// interrupted: after DONE of WANTED WHAT; END", and then end the program. Signals that the caller
-/// of the program ignores (nohup) stay ignored. One with counts may live inside one without; there
-/// are no others.
+/// interrupted: after DONE of WANTED WHAT; END", and then end the program. An object with counts
+/// may live inside one without counts; there are no others.
 class Interruptible {
  public:
   /// Without counts: "farcull: interrupted; no file was written", or how many were.
   Interruptible();
   ~Interruptible();
-  /// The texts have to outlive this object. terminal: clears the line of progress first.
+  /// The texts must outlive this object. terminal: clears the line of progress first.
   Interruptible(long wanted, const char* what, const char* end, bool terminal);
 
   void done(long count);

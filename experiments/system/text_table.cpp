@@ -4,10 +4,8 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <sstream>
-#include <string_view>
 
 namespace farcull {
 
@@ -102,15 +100,13 @@ std::string Table::text(std::size_t columns) const {
   }
 }
 
-bool takes_colour(int stream) {
+std::string coloured(const std::string& text, Colour colour, int stream) {
   const char* const unwanted = std::getenv("NO_COLOR");
   const char* const terminal = std::getenv("TERM");
-  return ::isatty(stream) == 1 && (unwanted == nullptr || *unwanted == '\0') &&
-         terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
-std::string coloured(const std::string& text, Colour colour, int stream) {
-  if (!takes_colour(stream)) return text;
+  if (::isatty(stream) != 1 || (unwanted != nullptr && *unwanted != '\0') || terminal == nullptr ||
+      std::string_view(terminal) == "dumb") {
+    return text;
+  }
   const char* const number = colour == Colour::good ? "32" : colour == Colour::bad ? "31" : "33";
   return std::string("\033[1;") + number + "m" + text + "\033[0m";
 }

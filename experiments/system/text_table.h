@@ -1,37 +1,33 @@
-// Text for people to read: aligned tables, colours on a terminal, and the quoting of words in
-// command lines that the reader is to copy.
+// Text for people: aligned tables, colours on a terminal, and quoted words of command lines.
 #pragma once
 
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstdio>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "core/base/text.h"
 
 namespace farcull {
 
 /// The width of text for people, in characters: that of the stream's terminal, but at least 40. It
-/// is 100 if the stream is no terminal, so that a file or a pipe gets the same text everywhere.
+/// is 100 for a file or a pipe, which get the same text everywhere.
 std::size_t text_columns(std::FILE* stream = stdout);
 
 /// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it.
-/// Continuation lines are indented to where the line's text starts: after its leading blanks and
-/// after a label that two blanks follow. The indentation is at least `indent`.
+/// Further lines are indented to the place where the text begins: after leading blanks, and after a
+/// label that two blanks follow. The indentation is at least `indent`.
 std::string wrapped(const std::string& text, std::size_t columns = text_columns(),
                     std::size_t indent = 0);
 
-/// Rows of cells. Each column is as wide as its widest cell. If the table is then wider than
-/// `columns`, its widest left-aligned column is wrapped. If that would not be enough, the columns
-/// that do not fit stand in further tables below; each repeats the columns that name a row.
+/// Rows of cells. Each column is as wide as its widest cell. If the table is then too wide, its
+/// widest left-aligned column is wrapped. If that is not enough, the columns that do not fit stand
+/// in further tables below, each with the columns that name a row.
 class Table {
  public:
-  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: so many columns, the
-  /// first ones, name a row.
+  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: how many columns, from
+  /// the first on, name a row.
   explicit Table(std::string_view alignment, std::size_t keys = 1)
       : alignment_(alignment), keys_(std::min(keys, alignment.size())) {}
   /// In a table of several columns, a row of one cell is a note on the row above it.
@@ -47,11 +43,8 @@ class Table {
 
 enum class Colour { good, bad, doubtful };  // green, red, yellow
 
-/// True if the stream (STDOUT_FILENO, STDERR_FILENO) is a terminal that is not dumb, and NO_COLOR
-/// is unset or empty (https://no-color.org).
-bool takes_colour(int stream);
-
-/// The text in bold and in the colour if the stream takes colours; else unchanged.
+/// The text in bold and in the colour if the stream (STDOUT_FILENO, STDERR_FILENO) is a terminal
+/// that is not dumb, and NO_COLOR is unset or empty (https://no-color.org); else unchanged.
 std::string coloured(const std::string& text, Colour colour, int stream);
 
 /// Quotes a word for a POSIX shell: unchanged if it is plain, else in single quotes.
