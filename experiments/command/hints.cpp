@@ -11,7 +11,7 @@
 #include "core/base/text.h"
 #include "core/boxes/join.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/mesh/near_points.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/system/text_table.h"
 #include "verify/inside.h"
 

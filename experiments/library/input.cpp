@@ -2,30 +2,23 @@
 #include "experiments/library/input.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
-#include <string>
-#include <utility>
 
-#include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "experiments/method/distances.h"
 
 namespace farcull {
 namespace {
 
-constexpr std::size_t kBlock = 1536;  // numbers in a block, a multiple of 3; fits the fastest cache
+constexpr std::size_t kBlock = 1536;  // numbers in a block, a multiple of 3; fits into the L1 cache
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
 
-// Whether no number is infinite or a NaN. The exponent bits of such a number are all ones, so
-// adding one to the exponent sets the sign bit. The loop has no branch, so that the compiler can
-// vectorize it.
+// True if no number is infinite or NaN. The exponent bits of such a number are all ones, so adding
+// one to the exponent sets the sign bit. The loop has no branch, so that the compiler can vectorize
+// it.
 bool all_finite(std::span<const double> block) {
   constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
   std::uint64_t bits = 0;
@@ -33,17 +26,10 @@ bool all_finite(std::span<const double> block) {
   return bits >> 63 == 0;
 }
 
-// Converts indices; returns whether all are below `vertices`.
-bool convert(std::span<const std::uint32_t> from, std::uint32_t* to, std::size_t vertices) {
-  std::memcpy(to, from.data(), from.size_bytes());
-  std::uint32_t most = 0;
-  for (std::size_t k = 0; k < from.size(); ++k) most = std::max(most, to[k]);
-  return most < vertices;
-}
-
-// The same for 64-bit indices. A number that is negative or too large for 32 bits has a bit set in
-// its upper half.
-bool convert(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t vertices) {
+// Converts indices; returns whether all are below `vertices`. A 64-bit number that is negative or
+// too large for 32 bits has a bit set in its upper half.
+template <class Index>
+bool convert(std::span<const Index> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
     const auto wide = static_cast<std::uint64_t>(from[k]);
@@ -63,19 +49,17 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
   const auto differ = [&](std::size_t k) {
     return std::bit_cast<std::uint64_t>(a[k]) ^ std::bit_cast<std::uint64_t>(b[k]);
   };
-  for (std::size_t k = 0; k < size; k += 3) {  // no branch: which ones moved is hard to predict
+  for (std::size_t k = 0; k < size; k += 3) {  // no branch, which would often be mispredicted
     out[next] = static_cast<std::uint32_t>(first + k / 3);
     next += (differ(k) | differ(k + 1) | differ(k + 2)) != 0;
   }
   out.resize(next);
 }
 
-// Checks the copies, not the input: another thread of the caller may change the input meanwhile,
-// but the numbers in the scene have to be right. The old contents of `to` were checked before, so
-// equal numbers need no check: most of a scene is often as it was in the last call.
-// A vertex that is not finite becomes 0, 0, 0, and is listed in `bad`: no triangle may use it. So
-// such a vertex counts as changed in every call.
-// change: receives the vertices that differ from those before; may be null.
+// Checks the copies, not the input: another thread of the caller may change the input meanwhile.
+// The old contents of `to` were checked before, so numbers that did not change need no check. A
+// vertex that is not finite becomes 0, 0, 0 and is listed in `bad`, since no triangle may use it;
+// it counts as changed in every call. change: receives the vertices that changed; may be null.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change,
                    std::vector<std::uint32_t>& bad) {
   const std::size_t before = 3 * to.size();
@@ -116,7 +100,7 @@ void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
               "give finite coordinates to each vertex that a triangle uses");
 }
 
-// checked: the old indices in `to` are known below `vertices`. Returns whether nothing changed.
+// checked: the old indices in `to` are below `vertices`. Returns whether nothing changed.
 template <class Index>
 bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool checked,
                     std::vector<std::array<std::uint32_t, 3>>& to) {
@@ -139,7 +123,7 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
       std::memcpy(copies + begin, converted.data(), 4 * size);
       continue;
     }
-    // Checks one index at a time, to name the first that is out of range.
+    // Names the first index that is out of range.
     for (std::size_t k = begin; k < end; ++k) {
       const Index v = from[k];
       copies[k] = static_cast<std::uint32_t>(v);
@@ -153,8 +137,8 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-// Each object must have a triangle. So a label for each triangle, as in 0, 0, 1, 1, cannot be
-// mistaken for the first triangles of objects: most of these would have no triangles.
+// Each object must have a triangle. So labels of triangles, as in 0, 0, 1, 1, are not mistaken for
+// the first triangles of objects.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
   for (std::size_t o = 0; o < starts.size(); ++o) {
     const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];
@@ -172,7 +156,7 @@ void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles
   }
 }
 
-// Without a pair to test, an empty answer would be taken for a scene without collisions.
+// Without a pair to test, an empty answer would look like a scene without collisions.
 void require_pairs(const Scene& scene) {
   if (const std::string reason = nothing_asked(scene, {}); !reason.empty())
     throw Error("object_starts", reason + ", so there is nothing to test",
@@ -180,8 +164,8 @@ void require_pairs(const Scene& scene) {
                 "against itself with self");
 }
 
-// Copies the arrays: vertices to `copies`, all else into the scene. Returns whether the scene has
-// as many vertices as before, and the same triangles and objects.
+// Copies the vertices to `copies`, and all other arrays into the scene. Returns whether the scene
+// has as many vertices as before, and the same triangles and objects.
 bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
           std::vector<Vec3>& copies, FrameChange* change, bool asked) {
   Scene& scene = taken.scene;
@@ -275,8 +259,8 @@ void require_good(std::span<const Pose> poses, std::size_t objects) {
 
 RigidMotion motion_of(const Pose& pose) { return {pose.r, pose.t}; }
 
-// Moves the vertices. Vertices of objects whose pose is that of the last call are left as they
-// are, unless `all` is true.
+// Moves the vertices of objects whose pose has changed since the last call; with `all`, all
+// vertices.
 void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
   std::vector<bool> moves(poses.size(), true);
   for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];
@@ -306,12 +290,12 @@ bool are_alone(const Input& input) {
          input.object_starts.empty();
 }
 
-// True if moving only the blocks that overlap costs less than load_input(). triangles: how many are
-// in these blocks; all are tested. of_moved: how many are in objects in another pose.
+// True if load_poses() takes less time than load_input(). triangles: how many are in the blocks
+// that overlap, all of which load_poses() tests. of_moved: how many are in objects in another pose.
 //
 // If the results of the last call are kept, load_input() tests only `of_moved` triangles. Else it
-// tests all triangles once, and after that only those that moved. So a call loses the triangles
-// that it tests beyond `of_moved`. When these losses add up to all triangles, load_input() is used.
+// tests all triangles in the next call, and then only those that moved. So load_poses() loses time
+// for the triangles beyond `of_moved`. It is used until these losses add up to all triangles.
 bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, TakenInput& taken) {
   if (keeps_frames) return triangles < of_moved;
   const auto all = static_cast<double>(taken.scene.triangles.size());
@@ -341,6 +325,19 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
   return same;
 }
 
+// The enumerations of farcull.h have the order of the internal ones.
+static_assert([] {
+  using Given = Contact::Kind;
+  using Own = ContactKind;
+  return same(Given::apart, Own::apart) && same(Given::equal, Own::equal) &&
+         same(Given::touch_vertex, Own::touch_vertex) && same(Given::touch_edge, Own::touch_edge) &&
+         same(Given::coplanar, Own::coplanar) && same(Given::crossing, Own::crossing) &&
+         same(Given::touch_face, Own::touch_face);
+}());
+static_assert(same(Contacts::none, ContactDetail::none) &&
+              same(Contacts::kinds, ContactDetail::kinds) &&
+              same(Contacts::segments, ContactDetail::segments));
+
 }  // namespace
 
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
@@ -360,7 +357,7 @@ void load_input(const Input& input, bool self, const std::vector<bool>& self_obj
     }
     if (change) change->same = same;
   } catch (...) {
-    taken = {};  // so that nothing unchecked stays, and the next scene counts as new
+    taken = {};  // nothing unchecked stays, and the next scene counts as new
     throw;
   }
 }
@@ -384,7 +381,7 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     --taken.skips;
     return std::nullopt;
   }
-  taken.skips = taken.next_skips;  // unless boxes decide below
+  taken.skips = taken.next_skips;  // set to 0 below if boxes decide
   taken.next_skips = std::min(2 * taken.next_skips, kMostSkips);
   try {
     if (!taken.rigid) {
@@ -411,31 +408,10 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
   }
 }
 
-namespace {
-
-// The enumerations of farcull.h have the order of the internal ones.
-static_assert([] {
-  using Given = Contact::Kind;
-  using Own = ContactKind;
-  return same(Given::apart, Own::apart) && same(Given::equal, Own::equal) &&
-         same(Given::touch_vertex, Own::touch_vertex) && same(Given::touch_edge, Own::touch_edge) &&
-         same(Given::coplanar, Own::coplanar) && same(Given::crossing, Own::crossing) &&
-         same(Given::touch_face, Own::touch_face);
-}());
-static_assert(same(Contacts::none, ContactDetail::none) &&
-              same(Contacts::kinds, ContactDetail::kinds) &&
-              same(Contacts::segments, ContactDetail::segments));
-
-}  // namespace
-
-void check(const Options& options) {
-  if (options.threads > kMostThreads)
+void require_threads(unsigned threads) {
+  if (threads > 1024)
     throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
-  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
-    throw Error("clearance", "is no distance", "give a finite number, 0 or more");
 }
-
-ContactDetail detail_of(Contacts contacts) { return static_cast<ContactDetail>(contacts); }
 
 Contact to_public(const ContactShape& shape) {
   const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };

@@ -1,23 +1,14 @@
 // For the functions of the library: converts and checks their input, options, answers and errors.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stage.h"
 #include "core/boxes/rigid.h"
-#include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
 #include "experiments/record/stage_words.h"
@@ -25,13 +16,11 @@
 
 namespace farcull {
 
-/// Whether two enumerators have the same value, so that a cast converts the first to the second.
+/// True if two enumerators have the same value, so that a cast converts the first to the second.
 template <class Given, class Own>
 constexpr bool same(Given given, Own own) {
   return static_cast<int>(given) == static_cast<int>(own);
 }
-
-inline constexpr unsigned kMostThreads = 1024;
 
 /// Runs the call in the floating-point environment of the proofs, and then restores the caller's.
 template <class Call>
@@ -71,10 +60,10 @@ auto watched(const MayGoOn& may_go_on, const Call& call) {
   return std::move(*out);
 }
 
-/// Runs the call with the state of an object of the library, one call at a time. Throws Error
-/// naming the object if it was moved from, or if another call uses it: one of another thread, or
-/// one of this thread that a signal handler interrupted. State has a member `std::atomic_flag
-/// used`, which is set while the call runs.
+/// Runs the call with the state of an object of the library; one call at a time, during which
+/// State::used, a std::atomic_flag, is set. Throws Error naming the object if it was moved from, or
+/// if another call uses it: one of another thread, or one of this thread that a signal handler
+/// interrupted.
 template <class State, class Call>
 auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
   return as_proved([&] {
@@ -94,53 +83,48 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// The input of the last call, and the poses of its objects.
 struct TakenInput {
-  Scene scene;                    // with the poses applied, but see `stale`
+  Scene scene;                    // its vertices are moved by the poses, but see `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
-  // The rest is empty if the last call had no poses.
-  std::vector<Vec3> unmoved;             // the vertices before the poses
-  std::vector<std::uint32_t> object_of;  // of each vertex; kNoObject: no triangle uses it
+  // The members below are empty if the last call had no poses.
+  std::vector<Vec3> unmoved;  // the vertices before the poses
+  std::vector<std::uint32_t>
+      object_of;  // the object of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
-  /// True: only vertices of some blocks are in these poses; the others are finite, in older poses.
+  /// True: only vertices of some blocks are in these poses; the others are in older poses.
   bool stale = false;
-  std::optional<RigidBlocks> rigid;  // of the unmoved vertices; null: not made yet
+  std::optional<RigidBlocks> rigid;  // made of the unmoved vertices; null: not made yet
   double loss = 0;                   // triangles, see pays() in input.cpp
-  // skips: how many more calls load_poses() leaves to load_input() without trying. next_skips: how
-  // many after its next failure; doubles with each failure, and is 1 again after a success.
+  /// How many more calls load_poses() leaves to load_input() without trying; how many after its
+  /// next failure, which doubles with each failure and is 1 after a success.
   int skips = 0, next_skips = 1;
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 inline constexpr int kMostSkips = 32;
 
 /// Copies the input into `taken`, which holds the input of the last call, and reuses its memory.
-/// self: every object is tested against itself; self_objects: the same for each object, empty or
-/// one for each. change: receives what is new since the last call; may be null. asked: a scene
-/// without anything to test is an error. Throws Error for input that does not satisfy Input, and
-/// leaves `taken` empty then.
+/// self, self_objects: as of Options. change: receives the changes since the last call; may be
+/// null. asked: a scene without anything to test is an error. Throws Error for input that does not
+/// satisfy Input; `taken` is then empty.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
-/// How load_poses() finds out which vertices it has to move.
+/// The question for which load_poses() moves vertices.
 struct PosesQuestion {
   double clearance = 0;
-  std::span<const ObjectPair> ignored;  // as ignored_of()
+  std::span<const ObjectPair> ignored;  // pairs that ignored_of() gives
   unsigned threads = 0;
-  /// True: the results of the last call are kept, so that load_input() needs no time for objects
-  /// that stay in their last pose.
-  bool keeps_frames = false;
+  bool keeps_frames = false;  // the results of the last call are kept
 };
 /// Takes input that is only poses: moves only the vertices of blocks that overlap, and returns
-/// these blocks. Null: load_input() has to take the input, with the same answer. That is so if the
-/// input is not only poses, if the last call had another number of poses, if poses are bad, if an
-/// object is tested against itself, if boxes do not decide, or if moving all vertices of objects in
-/// another pose costs less. After such a failure some calls return null at once
-/// (TakenInput::skips).
+/// these blocks. Null: load_input() has to take the input. That is so if the input is not only
+/// poses, if the last call had another number of poses, if poses are bad, if an object is tested
+/// against itself, if boxes do not decide, or if load_input() takes less time. After such a failure
+/// some calls return null at once (TakenInput::skips).
 std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
                                         TakenInput& taken);
 
-/// Throws Error naming an option that is bad for any input.
-void check(const Options& options);
-
-ContactDetail detail_of(Contacts contacts);
+/// Throws Error if an option asks for too many threads.
+void require_threads(unsigned threads);
 
 /// The ignored pairs of a scene with this many objects. Throws Error if a pair names an object that
 /// the scene does not have.

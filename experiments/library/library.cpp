@@ -1,10 +1,8 @@
-// Collider and DistanceFinder. Each copies its input into a scene, for which it then calls run() or
-// distances() (experiments/method/run.h, experiments/method/distances.h).
+// Collider and DistanceFinder. Each copies its input into a scene, and calls run() or distances()
+// (experiments/method/run.h, experiments/method/distances.h).
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
@@ -17,12 +15,14 @@ namespace farcull {
 namespace {
 
 RunOptions run_options(const Options& options) {
-  check(options);
+  require_threads(options.threads);
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw Error("clearance", "is no distance", "give a finite number, 0 or more");
   return {.method = Method::boxes,
           .clearance = options.clearance,
           .verify = false,
           .limit = options.limit,
-          .contacts = detail_of(options.contacts)};
+          .contacts = static_cast<ContactDetail>(options.contacts)};
 }
 
 std::vector<Pair> to_public(const std::vector<TrianglePair>& pairs) {
@@ -41,9 +41,10 @@ struct Collider::State {
   Options options;
   RunOptions run;
   Session session;
-  TakenInput taken;  // of the last call
+  TakenInput taken;  // the input of the last call
   FrameChange change;
-  std::optional<BlockDecision> decided;  // of load_poses(); null: load_input() took the input
+  std::optional<BlockDecision>
+      decided;  // answer of load_poses(); null: load_input() took the input
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
@@ -57,7 +58,7 @@ struct Collider::State {
 };
 
 void Collider::State::take_scene(const Input& input) {
-  // Remembering frames takes memory, and would not help a single call.
+  // A single call does not remember frames, which takes memory.
   if (++calls == 2) session.remember_frames();
   const FrameMemory* const memory = session.frame_memory();
   change = {};
@@ -73,7 +74,7 @@ void Collider::State::take_scene(const Input& input) {
                          taken);
     if (decided) return;
   }
-  // What is new is not known if the last call did not move all vertices (stale).
+  // If the last call did not move all vertices (stale), the changes cannot be found.
   const bool compares = memory && !memory->moved.waits() && !taken.stale;
   load_input(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }
@@ -155,17 +156,15 @@ DistanceOptions checked(const DistanceFinderOptions& options) {
                       .k = options.k,
                       .inside = options.inside,
                       .threads = options.threads};
-  if (options.threads > kMostThreads)
-    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
+  require_threads(options.threads);
   if (options.within && !(*options.within >= 0))
     throw Error("within", "is no distance", "give a number, 0 or more, or nothing for no limit");
   out.within = options.within.value_or(out.within);
   if (out.pairs == DistancePairs::all && !std::isfinite(out.within))
     throw Error("within", "is not finite, which pairs of all triangles need",
                 "give a finite distance, 0 or more");
-  if (out.pairs == DistancePairs::nearest && options.k == 0)
-    throw Error("k", "is 0", "give 1 or more");
   const bool nearest = out.pairs == DistancePairs::nearest;
+  if (nearest && options.k == 0) throw Error("k", "is 0", "give 1 or more");
   if (nearest && !options.ignore.empty())
     throw Error("ignore", "has no meaning with nearest", "leave it out, or give another kind");
   if (nearest && (options.self || std::ranges::count(options.self_objects, true) > 0))
@@ -206,7 +205,7 @@ DistanceAnswer to_public(const Scene& scene, const Distance& d, bool exact) {
 struct DistanceFinder::State {
   DistanceFinderOptions given;
   DistanceOptions options;
-  TakenInput taken;  // of the last call
+  TakenInput taken;  // the input of the last call
   DistanceMemory memory;
   std::atomic_flag used;
 

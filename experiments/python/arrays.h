@@ -1,21 +1,12 @@
-// The compiled module: calls without the lock of the interpreter, arrays of the caller as input and
-// answers as arrays, and the parts of the module.
+// The parts of the compiled module: calls without the lock of the interpreter, arrays of the caller
+// as input, and answers as arrays.
 #pragma once
 
 #include <pybind11/numpy.h>
 
 #include <pybind11/pybind11.h>
-#include <array>
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
@@ -23,15 +14,13 @@
 
 namespace farcull::python {
 
-// Calls of the library run in another thread, so that the interpreter continues and can stop them.
-
 namespace py = pybind11;
 
 /// Runs `work` in its own thread, without the lock of the interpreter, with the floating-point
-/// environment that the proofs assume. The calling thread releases the lock and checks for signals
-/// every 50 ms. If a handler of Python raises, as that of Ctrl-C does, the work is asked to stop,
-/// and the handler's exception is thrown when the work has ended. `work` must not touch Python. Its
-/// exceptions are thrown here. Precondition: the lock is held.
+/// environment that the proofs assume. Meanwhile the calling thread checks for signals every 50 ms.
+/// If a handler of Python raises an exception, as that of Ctrl-C does, the work is asked to stop,
+/// and the exception is thrown when the work has ended. Exceptions of `work` are thrown here.
+/// `work` must not touch Python. Precondition: the caller holds the lock.
 void run_without_gil(const std::function<void()>& work);
 
 /// Runs `work` as run_without_gil() does, and returns its value.
@@ -42,8 +31,8 @@ auto without_gil(const Work& work) {
   return std::move(*out);
 }
 
-/// Marks an object as in use for as long as this lives. Throws farcull.Error if it is marked
-/// already: by another thread, or by a call of this thread that a signal handler interrupted.
+/// Marks an object as in use for as long as the Turn lives. Throws farcull.Error if it is marked:
+/// by another thread, or by a call of this thread that a signal handler interrupted.
 class Turn {
  public:
   Turn(std::atomic_flag& used, const char* name);
@@ -55,27 +44,18 @@ class Turn {
   std::atomic_flag& used_;
 };
 
-/// Stops all running calls and waits for their end; later calls are stopped as well. To be called
-/// when the interpreter ends. Precondition: the lock is held.
-void end_calls();
-
 /// Lets a run stop between its stages.
 Progress stopping_progress();
 
-/// Throws an exception of the package: farcull.InputError if `input`, else farcull.Error. input:
-/// the caller's argument is wrong.
+/// Throws farcull.InputError if `input` is true, since an argument is wrong; else farcull.Error.
 [[noreturn]] void raise(const std::string& where, const std::string& reason,
                         const std::string& remedy, bool input);
-
-/// Translates exceptions of farcull into those of the package: an Error that names a parameter
-/// becomes an InputError, any other an Error; std::bad_alloc becomes a MemoryError.
-void register_exceptions();
 
 /// The input of a call. Only its constructor and destructor need the interpreter.
 class MeshArrays {
  public:
-  /// As _arguments.py makes them, contiguous: vertices (n, 3), doubles; triangles (m, 3), int64 or
-  /// uint32; object_starts; poses (k, 3, 4), or empty if no object moves.
+  /// Contiguous arrays: vertices (n, 3), doubles; triangles (m, 3), int64 or uint32; object_starts;
+  /// poses (k, 3, 4), or empty if no object moves.
   MeshArrays(const py::array& vertices, const py::array& triangles,
              const py::array_t<std::int64_t>& object_starts, const py::array_t<double>& poses);
   MeshArrays(const MeshArrays&) = delete;
@@ -124,17 +104,13 @@ py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles);
 
-// The parts of the compiled module. Each adds its classes and functions.
-
-/// A scene that Python holds. It is immutable, so arrays and records may point into it.
+/// A scene that Python holds. It never changes, so arrays and records may point into it.
 struct KeptScene {
   std::shared_ptr<const Scene> scene;
   explicit KeptScene(Scene given) : scene(std::make_shared<const Scene>(std::move(given))) {}
 };
 
-/// The question to a collider, from the dictionary of _collide.py.
-Options options_of(const py::dict& question);
-
+// Each of these functions adds classes and functions to the module.
 void add_collider(py::module_& module);
 void add_distances(py::module_& module);
 void add_scenes(py::module_& module);

@@ -3,16 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdint>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <ranges>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "experiments/library/distance.h"
 #include "experiments/python/arrays.h"
@@ -37,10 +30,9 @@ py::dict report_of(const Report& report) {
                   "stages"_a = std::move(stages));
 }
 
-// The contact details of each pair: the arrays of kinds and of segments, or None. Range: any
-// range of Contact with a size.
-template <class Range>
-std::pair<py::object, py::object> contact_arrays(const Range& contacts, Contacts asked) {
+// The arrays of kinds and of segments; None for one that was not asked for.
+std::pair<py::object, py::object> contact_arrays(const std::vector<Contact>& contacts,
+                                                 Contacts asked) {
   if (asked == Contacts::none) return {py::none(), py::none()};
   if (asked == Contacts::kinds) return {kind_array(contacts), py::none()};
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -109,7 +101,7 @@ DistanceKind kind_of(const std::string& name) {
   raise("kind", "'" + name + "' is no choice", "give objects, nearest or all", true);
 }
 
-// Codes of features and of DistanceInside are indices into these.
+// The codes of features and of DistanceInside are indices into these arrays.
 constexpr std::array kFeatures = {"vertex 0", "vertex 1", "vertex 2", "edge 0",
                                   "edge 1",   "edge 2",   "face"};
 constexpr std::array kInside = {"unknown", "none", "a", "b", "not closed"};
@@ -151,15 +143,15 @@ py::dict columns_of(const std::vector<DistanceAnswer>& answers, bool exact) {
                   "normals"_a = normals, "features"_a = features, "inside"_a = inside);
 }
 
-template <class Names>
-py::tuple names_of(const Names& names) {
-  py::tuple out(names.size());
-  for (std::size_t k = 0; k < names.size(); ++k) out[k] = py::str(names[k]);
-  return out;
+// A tuple with the name of each value.
+template <class Values, class Name>
+py::tuple tuple_of(const Values& values, const Name& name) {
+  py::list out;
+  for (const auto& value : values) out.append(name(value));
+  return py::tuple(out);
 }
 
-}  // namespace
-
+// The options of a collider, from the dictionary of _collide.py.
 Options options_of(const py::dict& question) {
   return {.threads = question["threads"].cast<unsigned>(),
           .self = question["all_objects"].cast<bool>(),
@@ -170,6 +162,8 @@ Options options_of(const py::dict& question) {
           .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
           .limit = question["limit"].cast<std::uint64_t>()};
 }
+
+}  // namespace
 
 void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
@@ -182,10 +176,7 @@ void add_collider(py::module_& module) {
       });
   // Codes of kinds are indices into this tuple, for both enumerations.
   static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
-  py::tuple kinds(kContactKinds.size());
-  for (std::size_t k = 0; k < kContactKinds.size(); ++k)
-    kinds[k] = to_string(static_cast<Contact::Kind>(k));
-  module.attr("kinds") = kinds;
+  module.attr("kinds") = tuple_of(kContactKinds, [](ContactKind kind) { return name_of(kind); });
 }
 
 void add_distances(py::module_& module) {
@@ -209,8 +200,8 @@ void add_distances(py::module_& module) {
                       const py::array& starts, const py::array& poses) {
         return columns_of(kept.find(vertices, triangles, starts, poses), kept.options.exact);
       });
-  module.attr("features") = names_of(kFeatures);
-  module.attr("inside") = names_of(kInside);
+  module.attr("features") = tuple_of(kFeatures, std::identity());
+  module.attr("inside") = tuple_of(kInside, std::identity());
 }
 
 }  // namespace farcull::python

@@ -1,36 +1,33 @@
-// Runs calls in their own threads, turns exceptions of C++ into those of Python, and defines the
-// compiled module. Messages name parameters, not options: depth_format, not "--depth-format".
+// Runs calls in their own threads, turns exceptions of C++ into those of Python, converts the
+// arrays of the package, and defines the compiled module. Users call the package farcull/ around
+// it, which checks arguments and makes arrays contiguous. Messages name parameters, not options:
+// depth_format, not "--depth-format".
 #include "experiments/python/arrays.h"
 
 #include <cxxabi.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
-#include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
 
 namespace farcull::python {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // between checks for signals
+constexpr std::chrono::milliseconds kLook{50};  // time between checks for signals
 
-// The GNU C library returns free memory at the top of a thread's heap to the system if it exceeds
-// twice the largest block that was mapped and freed before, at most 32 MB. While that limit is low,
-// each call requests the same pages again, and writing to new pages took half of the time of small
-// scenes. So one large block is mapped and freed, never written to, which raises the limit. A limit
-// that the environment or mallopt() has set stays.
+// Raises a limit of the GNU C library, up to which free memory stays with the process: twice the
+// largest block that was mapped and freed before, at most 32 MB. While the limit is low, each call
+// requests the same pages again, and writing to new pages took half of the time of small scenes. So
+// one large block is mapped and freed. A limit that the environment or mallopt() has set stays.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -43,8 +40,8 @@ void keep_small_memory() {
 #endif
 }
 
-// The running calls. They are stopped at the end of the interpreter, since they would use what the
-// process destroys.
+// The running calls. They are stopped when the interpreter ends, since the process then destroys
+// objects that they use.
 class Running {
  public:
   explicit Running(StoppableCall& call) : call_(call) {
@@ -62,7 +59,7 @@ class Running {
   static void end_all() {
     const std::lock_guard lock(all().mutex);
     all().ending = true;
-    if (::getpid() != all().process) return;  // a fork does not have the threads of the calls
+    if (::getpid() != all().process) return;  // a forked process lacks the threads of the calls
     for (StoppableCall* call : all().calls) call->stop();
     for (StoppableCall* call : all().calls) {
       while (!call->wait_for(kLook)) {
@@ -77,7 +74,7 @@ class Running {
     bool ending = false;
     pid_t process = ::getpid();
   };
-  // Never destroyed, since a thread of the interpreter may outlive it.
+  // Never destroyed, since threads of the interpreter may use it until the process ends.
   static All& all() {
     static All& made = *new All;
     return made;
@@ -86,9 +83,9 @@ class Running {
   StoppableCall& call_;
 };
 
-// Waits a moment without the lock of the interpreter; returns whether the call has ended. If the
-// interpreter ends meanwhile, it ends threads that request its lock, and Python must not be touched
-// any more, so such a thread waits here for the end of the process.
+// Waits a moment without the lock of the interpreter; returns whether the call has ended. An
+// interpreter that ends meanwhile ends threads that request its lock. Such a thread must not touch
+// Python, so it waits here for the end of the process.
 bool ended(StoppableCall& call) {
   PyThreadState* const state = PyEval_SaveThread();
   const bool ended = call.wait_for(kLook);
@@ -116,7 +113,7 @@ std::string as_parameters(const std::string& text) {
   return out;
 }
 
-// Whether an error of the library names a parameter of the caller.
+// True if an error of the library names a parameter of the caller.
 bool is_parameter(std::string_view where) {
   constexpr std::array<std::string_view, 19> kNames = {
       "V",       "F",         "vertices",  "triangles", "object_starts", "self_objects",
@@ -157,7 +154,7 @@ void translate(std::exception_ptr failure) {
     const std::string line = error.line > 0 ? ":" + std::to_string(error.line) : "";
     set_from(error.where + line, error.reason, error.remedy);
   } catch (const std::system_error& error) {
-    // The system could not start a thread; each needs memory for its stack.
+    // The system could not start a thread, which needs memory for its stack.
     if (error.code() != std::errc::resource_unavailable_try_again) throw;
     PyErr_SetString(PyExc_MemoryError, "farcull: no thread can be started");
   } catch (const Stopped&) {
@@ -169,6 +166,49 @@ void translate(std::exception_ptr failure) {
         "report it with what was called", false);
   }
 }
+
+[[noreturn]] void refuse(const std::string& name, const std::string& reason,
+                         const std::string& remedy) {
+  raise(name, reason, remedy, true);
+}
+
+template <class Number>
+std::span<const Number> numbers_of(const py::array& array) {
+  return {static_cast<const Number*>(array.data()), static_cast<std::size_t>(array.size())};
+}
+
+// pybind11 and numpy keep state in variables of the process, which all its interpreters would
+// share. pybind11 waits forever if it first sees an interpreter other than the main one.
+constexpr const char* kNotMain =
+    "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
+    "process of its own";
+
+bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
+
+// Stops all running calls and waits for their end; later calls are stopped as well. To be called
+// when the interpreter ends, with its lock.
+void end_calls() {
+  const py::gil_scoped_release released;
+  Running::end_all();
+}
+
+void fill(py::module_& module) {
+  // Python gives another interpreter an existing module without calling PyInit again.
+  module.def("require_main_interpreter", [] {
+    if (!in_main_interpreter()) throw py::import_error(kNotMain);
+  });
+  // An Error that names a parameter becomes an InputError, any other one an Error; std::bad_alloc
+  // becomes a MemoryError.
+  py::register_exception_translator(&translate);
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+  spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
+  add_collider(module);
+  add_distances(module);
+  add_scenes(module);
+  add_runs(module);
+}
+
+py::module_::module_def definition;
 
 }  // namespace
 
@@ -194,13 +234,7 @@ Turn::Turn(std::atomic_flag& used, const char* name) : used_(used) {
     raise(name, "is in use by another thread or call", "make one for each thread", false);
 }
 
-void end_calls() {
-  const py::gil_scoped_release released;
-  Running::end_all();
-}
-
-Progress stopping_progress() {
-  return [](const ProgressStep&) { stop_point(); };
+ProgressStep&) { stop_point(); };
 }
 
 void raise(const std::string& where, const std::string& reason, const std::string& remedy,
@@ -209,41 +243,60 @@ void raise(const std::string& where, const std::string& reason, const std::strin
   throw py::error_already_set();
 }
 
-void register_exceptions() { py::register_exception_translator(&translate); }
-
-// The compiled module. Users call the package farcull/ around it, which checks arguments.
-
-namespace {
-
-// pybind11 and numpy keep state in variables of the process, which all its interpreters would
-// share. pybind11 waits forever if it first sees an interpreter other than the main one.
-constexpr const char* kNotMain =
-    "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
-    "process of its own";
-
-bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
-
-void fill(py::module_& module) {
-  // Python gives another interpreter an existing module without calling PyInit again.
-  module.def("require_main_interpreter", [] {
-    if (!in_main_interpreter()) throw py::import_error(kNotMain);
-  });
-  register_exceptions();
-  py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
-  add_collider(module);
-  add_distances(module);
-  add_scenes(module);
-  add_runs(module);
+MeshArrays::MeshArrays(const py::array& vertices, const py::array& triangles,
+                       const py::array_t<std::int64_t>& object_starts,
+                       const py::array_t<double>& poses)
+    : kept_{vertices, triangles} {
+  for (py::ssize_t k = 0; k < object_starts.size(); ++k) {
+    const std::int64_t first = object_starts.at(k);
+    if (first < 0 || first > std::numeric_limits<std::uint32_t>::max()) {
+      refuse("object_starts",
+             "object " + std::to_string(k) + " starts at triangle " + std::to_string(first),
+             "give the first triangle of each object, ascending from 0");
+    }
+    starts_.push_back(static_cast<std::uint32_t>(first));
+  }
+  poses_.resize(static_cast<std::size_t>(poses.shape(0)));
+  const double* from = poses.data();
+  for (Pose& pose : poses_) {
+    for (std::size_t row = 0; row < 3; ++row, from += 4) {
+      std::copy(from, from + 3, pose.r.begin() + static_cast<std::ptrdiff_t>(3 * row));
+      pose.t[row] = from[3];
+    }
+  }
+  input_ = {numbers_of<double>(vertices), {}, starts_, {}, poses_};
+  if (triangles.itemsize() == sizeof(std::int64_t)) {
+    input_.wide_triangles = numbers_of<std::int64_t>(triangles);
+  } else {
+    input_.triangles = numbers_of<std::uint32_t>(triangles);
+  }
 }
 
-py::module_::module_def definition;
-
-}  // namespace
+std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
+                                   std::size_t triangles) {
+  // The caller has checked that these are whole numbers; those beyond 2^63 become negative.
+  const auto given =
+      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!given || given.ndim() != 2 || given.shape(1) != 2)
+    refuse(name, "have no two columns", "give an array of shape (k, 2)");
+  std::vector<TrianglePair> out(static_cast<std::size_t>(given.shape(0)));
+  const std::int64_t* from = given.data();
+  for (std::size_t k = 0; k < out.size(); ++k, from += 2) {
+    const auto [low, high] = std::minmax(from[0], from[1]);
+    if (low < 0 || static_cast<std::uint64_t>(high) >= triangles) {
+      refuse(name,
+             "row " + std::to_string(k) + " names triangles " + std::to_string(from[0]) + " and " +
+                 std::to_string(from[1]) + " of " + std::to_string(triangles),
+             "give numbers of triangles from 0");
+    }
+    out[k] = {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high)};
+  }
+  return out;
+}
 
 }  // namespace farcull::python
 
-// As PYBIND11_MODULE, but checks the interpreter first.
+// As PYBIND11_MODULE, but refuses other interpreters than the main one first.
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull();
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull() {
   namespace python = farcull::python;

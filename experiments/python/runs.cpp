@@ -1,22 +1,12 @@
-// Runs of any method, with their record, check, picture and clashes, like the commands of the
-// same names.
+// Scenes, moving scenes, and runs of any method, with their records, checks, pictures and clashes.
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <ranges>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "experiments/library/input.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/clash.h"
@@ -34,11 +24,12 @@
 
 namespace farcull::python {
 
-// ---- scenes and moving scenes, read as by the program ----
-
 namespace {
 
+using namespace py::literals;
+
 using Kept = std::unique_ptr<KeptScene>;
+using Ignored = std::vector<std::array<std::uint32_t, 2>>;  // pairs of objects
 
 Kept from_arrays(const py::array& vertices, const py::array& triangles, const py::array& starts,
                  const py::array& poses, const std::string& name,
@@ -64,7 +55,7 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   });
 }
 
-// weld: "" for none.
+// weld: as parse_weld() takes it; empty: vertices stay as they are.
 SceneArguments arguments_of(const std::vector<std::string>& names, const std::string& weld) {
   SceneArguments out(names);
   if (!weld.empty()) out.weld = weld;
@@ -74,9 +65,7 @@ SceneArguments arguments_of(const std::vector<std::string>& names, const std::st
 Kept from_names(const std::vector<std::string>& names, const std::string& weld, bool self) {
   return without_gil([&] {
     Scene scene = load_scene(arguments_of(names, weld));
-    if (self) {
-      for (Object& object : scene.objects) object.self = true;
-    }
+    for (Object& object : scene.objects) object.self |= self;
     return std::make_unique<KeptScene>(std::move(scene));
   });
 }
@@ -106,14 +95,6 @@ class Frames {
   std::unique_ptr<FrameSource> source_;
 };
 
-py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
-  const std::vector<Object>& objects = kept.scene->objects;
-  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(objects.size()));
-  for (std::size_t o = 0; o < objects.size(); ++o)
-    out.mutable_at(static_cast<py::ssize_t>(o)) = objects[o].first_triangle;
-  return out;
-}
-
 // The triangles of a mesh after vertices that are at most the tolerance apart were merged.
 py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
                                   const py::array_t<std::int64_t>& triangles,
@@ -138,13 +119,11 @@ py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
   return out;
 }
 
-// The pairs of objects that two name patterns select, as in the program. what: its name in errors.
-std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
-                                                      const std::string& first,
-                                                      const std::string& second,
-                                                      const std::string& what) {
+// The pairs of objects that two patterns of names select. what: the name of the patterns in errors.
+Ignored pairs_named(const KeptScene& kept, const std::string& first, const std::string& second,
+                    const std::string& what) {
   return without_gil([&] {
-    std::vector<std::array<std::uint32_t, 2>> out;
+    Ignored out;
     for (const ObjectPair& pair : pairs_between(*kept.scene, first, second, "ignore", what))
       out.push_back({pair.a, pair.b});
     return out;
@@ -174,7 +153,13 @@ void add_scenes(py::module_& module) {
       .def_property_readonly("name", [](const KeptScene& k) { return k.scene->name; })
       .def_property_readonly("vertices", rows(&Scene::vertices))
       .def_property_readonly("triangles", rows(&Scene::triangles))
-      .def_property_readonly("object_starts", &object_starts)
+      .def_property_readonly("object_starts",
+                             [](const KeptScene& k) {
+                               std::vector<std::int64_t> out;
+                               for (const Object& o : k.scene->objects)
+                                 out.push_back(o.first_triangle);
+                               return py::array_t<std::int64_t>(py::cast(out));
+                             })
       .def_property_readonly("ignored",
                              [](const KeptScene& k) { return pair_array(k.scene->ignored); })
       .def("pairs_named", &pairs_named)
@@ -183,11 +168,7 @@ void add_scenes(py::module_& module) {
   module.def("scene_of_arrays", &from_arrays);
   module.def("scene_of_names", &from_names);
   module.def("weld", &welded);
-  module.def("take_reading_notes", [] {
-    py::list out;
-    for (const std::string& note : take_reading_notes()) out.append(note);
-    return out;
-  });
+  module.def("take_reading_notes", &take_reading_notes);
   module.def("builtin_scenes", [] {
     py::list out;
     for (const BuiltinScene& scene : builtin_scenes()) out.append(scene.name);
@@ -201,11 +182,7 @@ void add_scenes(py::module_& module) {
       .def("at", &Frames::at);
 }
 
-// ---- runs ----
-
 namespace {
-
-using namespace py::literals;
 
 // A record, with its scene.
 struct KeptRecord {
@@ -224,9 +201,7 @@ struct KeptRecord {
   }
 };
 
-using Ignored = std::vector<std::array<std::uint32_t, 2>>;
-
-// ignore: pairs of two different objects of the scene; limit: 0 for none.
+// ignore: pairs of different objects; limit: 0 for none.
 RunOptions options_of(const GivenOptions& given, const Ignored& ignore, std::uint64_t limit,
                       bool verify = true, bool kinds = false) {
   RunOptions out{.verify = verify,
@@ -261,25 +236,7 @@ py::object kinds_of(const Record& record, const std::vector<ContactShape>& conta
   return kind_array(contacts);
 }
 
-py::dict accounting_of(const Accounting& accounting) {
-  return py::dict("pairs_total"_a = accounting.pairs_total, "ignored"_a = accounting.ignored,
-                  "pairs_kept"_a = accounting.pairs_kept,
-                  "certified_by_boxes"_a = accounting.certified_by_boxes,
-                  "neighbours"_a = accounting.neighbours,
-                  "certified_by_predicates"_a = accounting.certified_by_predicates,
-                  "false_negatives"_a = accounting.false_negatives, "ms"_a = accounting.ms);
-}
-
-py::list views_of(const Candidates& found) {
-  py::list out;
-  for (const ViewReport& v : found.views()) {
-    out.append(py::dict("name"_a = v.name, "looked"_a = v.drawn, "width"_a = v.width,
-                        "height"_a = v.height, "radius_px"_a = v.radius_px));
-  }
-  return out;
-}
-
-// The list as a file of the program would hold it.
+// The pairs as a list that was read from a file.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
   GivenList out{.name = "pairs", .has_frames = false, .rows = {}, .not_looked_at = {}};
@@ -295,7 +252,7 @@ GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   return out;
 }
 
-// certificate: its text, or none; pairs: a list to check alone or with the certificate, or none.
+// certificate: its text; pairs: a list to check alone or with the certificate.
 py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certificate,
                   const std::optional<py::array>& pairs, std::optional<double> clearance) {
   const Scene& scene = *kept.scene;
@@ -319,7 +276,8 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
-// The pixels, the texts of the panels, and the page with the same answers if `page` asks for it.
+// The pixels, the texts of the panels, and a page with the same answers; empty unless `page` is
+// true.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom, int width,
                      int height, const std::string& device, unsigned threads, bool page) {
@@ -395,12 +353,24 @@ void add_runs(py::module_& module) {
   property("neighbour_kinds", [](const Record& r) { return kinds_of(r, r.neighbour_contacts); });
   property("complete", [](const Record& r) { return r.complete; });
   property("candidates", [](const Record& r) { return r.found.count; });
-  property("views", [](const Record& r) { return views_of(r.found); });
+  property("views", [](const Record& r) {
+    py::list out;
+    for (const ViewReport& v : r.found.views()) {
+      out.append(py::dict("name"_a = v.name, "looked"_a = v.drawn, "width"_a = v.width,
+                          "height"_a = v.height, "radius_px"_a = v.radius_px));
+    }
+    return out;
+  });
   property("promises", [](const Record& r) { return r.promise.holds; });
   property("promises_reason", [](const Record& r) { return r.promise.reason; });
   property("accounting", [](const Record& r) -> py::object {
     if (!r.verification) return py::none();
-    return accounting_of(*r.verification);
+    const Accounting& all = *r.verification;
+    return py::dict(
+        "pairs_total"_a = all.pairs_total, "ignored"_a = all.ignored,
+        "pairs_kept"_a = all.pairs_kept, "certified_by_boxes"_a = all.certified_by_boxes,
+        "neighbours"_a = all.neighbours, "certified_by_predicates"_a = all.certified_by_predicates,
+        "false_negatives"_a = all.false_negatives, "ms"_a = all.ms);
   });
   const auto viewed = [&](const char* name, auto numbers) {
     made.def_property_readonly(name, [numbers](py::object self) {

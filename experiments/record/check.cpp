@@ -1,30 +1,23 @@
-// Checks a certificate, a list of pairs, or both against a scene. Turns the findings of the checker
-// of verify/certificate into text and JSON.
+// Checks a certificate, a list of pairs, or both against a scene, by the checker of
+// verify/certificate. Turns the findings into text and JSON.
 #include "experiments/record/check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <stdexcept>
-#include <utility>
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/scene/scene.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/system/text_table.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json checked_scene_json(const Scene& scene) {
-  return {
-      {"name", scene.name}, {"hash", scene_hash(scene)}, {"self_not_asked", not_asked_json(scene)}};
-}
 
 Json list_json(const Scene& scene, const SceneCheck& check) {
   Json out = {{"claimed_sha256", text_json(check.claimed_sha256)},
@@ -50,6 +43,11 @@ double ns_per_pair(const CheckResult& result) {
              : result.decide_ms * 1e6 / static_cast<double>(result.found.box_pairs);
 }
 
+// "bunny triangle 3 and floor triangle 0".
+std::string pair_text(const Scene& scene, const TrianglePair& pair) {
+  return place_text(scene, pair.a) + " and " + place_text(scene, pair.b);
+}
+
 std::string list_text(const Scene& scene, const SceneCheck& check) {
   const ListDifferences& differ = *check.differences;
   std::string out = fmt::format("           {} is {}this list: {}\n", check.list,
@@ -64,16 +62,11 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
                        counted(differ.missing, "pair", "pairs"),
                        pair_text(scene, *differ.missing_pair));
   }
-  std::string columns;
-  for (const std::string& name : check.not_looked_at)
-    columns += (columns.empty() ? "" : ", ") + name;
-  if (!columns.empty()) out += fmt::format("           not looked at: columns {}\n", columns);
+  if (!check.not_looked_at.empty()) {
+    out +=
+        fmt::format("           not looked at: columns {}\n", fmt::join(check.not_looked_at, ", "));
+  }
   return out;
-}
-
-std::string differences_text(const ListDifferences& differ) {
-  return differ.wrong > 0 ? fmt::format("line {}: {}", differ.wrong_line, differ.wrong_reason)
-                          : "a pair is missing";
 }
 
 // Checks a list without a certificate: makes the evidence, which the checker then verifies.
@@ -99,7 +92,7 @@ CheckResult check_list(const Scene& scene, const std::string& name,
   return result;
 }
 
-// Compares the list with the pairs that meet. The verdict is then about certificate and list.
+// Compares the list with the pairs that meet. The verdict is afterwards about the list too.
 void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
                   SceneCheck& check) {
   CheckResult& result = check.result;
@@ -117,9 +110,10 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
   }
   if (!alone && result.verdict != Verdict::proved) return;
   result.verdict = alone ? Verdict::refuted : Verdict::not_proved;
-  result.reason =
-      fmt::format("{} is {}: {}", list.name, alone ? "not the list of the pairs" : "another list",
-                  differences_text(differ));
+  result.reason = fmt::format(
+      "{} is {}: {}", list.name, alone ? "not the list of the pairs" : "another list",
+      differ.wrong > 0 ? fmt::format("line {}: {}", differ.wrong_line, differ.wrong_reason)
+                       : "a pair is missing");
   result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
 }
 
@@ -130,11 +124,6 @@ Json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair) {
   return pair_json(scene, *pair);
 }
 
-std::string pair_text(const Scene& scene, const TrianglePair& pair) {
-  return place_text(scene, pair.a) + " and " + place_text(scene, pair.b);
-}
-
-// The text names the scene and not the run, since a proof is about the scene.
 std::string proved_text(const Scene& scene, const SceneCheck& check) {
   return proved_text(check.result.meeting.size(), check.clearance) +
          proved_limits(check.clearance, has_self(scene), !scene.ignored.empty());
@@ -146,17 +135,14 @@ std::string proved_limits(double clearance, bool self, bool ignores) {
 }
 
 std::string proved_text(std::size_t pairs, double clearance) {
-  const std::string near = clearance == 0 ? "" : fmt::format("at distance {} or less", clearance);
-  std::string out;
-  if (pairs == 0) {
-    out = "no pair of the scene " + (near.empty() ? "meets" : "is " + near);
-  } else if (pairs == 1) {
-    out = "this pair of the scene " + (near.empty() ? "meets" : "is " + near) + ", and no other";
-  } else {
-    out = "these " + grouped(pairs) + " pairs of the scene " +
-          (near.empty() ? "meet" : "are " + near) + ", and no others";
+  const std::string near = fmt::format("at distance {} or less", clearance);
+  if (pairs > 1) {
+    return "these " + grouped(pairs) + " pairs of the scene " +
+           (clearance == 0 ? "meet" : "are " + near) + ", and no others";
   }
-  return out;
+  return (pairs == 0 ? "no" : "this") +
+         (" pair of the scene " + (clearance == 0 ? "meets" : "is " + near)) +
+         (pairs == 0 ? "" : ", and no other");
 }
 
 std::string verdict_text(const Scene& scene, const SceneCheck& check) {
@@ -215,7 +201,10 @@ Json claims_json(const Certificate::Claims& claims) {
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check) {
   const CheckResult& result = check.result;
   return {{"certificate", text_json(check.certificate)},
-          {"scene", checked_scene_json(scene)},
+          {"scene",
+           {{"name", scene.name},
+            {"hash", scene_hash(scene)},
+            {"self_not_asked", not_asked_json(scene)}}},
           {"clearance", check.clearance},
           {"verdict", to_string(result.verdict)},
           {"proves", json_if(result.verdict == Verdict::proved, proved_text(scene, check))},

@@ -1,18 +1,13 @@
+// Writes the record of `farcull clash` as text, CSV and JSON, compares it with an earlier CSV, and
+// collects the records of frames.
 #include "experiments/record/output.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "commit.h"
 #include "core/base/bytes.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
-#include "experiments/record/clash_frames.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
@@ -30,7 +25,8 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-/// How the surfaces meet, by the strongest contact: "faces lie on each other in 24 pairs ...".
+/// How the surfaces meet, by the strongest kind of contact: "faces lie on each other in 24 pairs
+/// ...".
 std::string contact_words(const ClashRow& row) {
   using enum ContactKind;
   std::uint64_t n = 0;
@@ -46,7 +42,7 @@ std::string contact_words(const ClashRow& row) {
   return how + " in " + counted(n, "pair of triangles", "pairs of triangles");
 }
 
-/// An id for two parts by name. It does not depend on their order, on the file or on options.
+/// An id of two parts that depends only on their names, not on their order.
 std::string id_of(std::string a, std::string b) {
   if (b < a) std::swap(a, b);
   return sha256(a + '\n' + b).substr(0, 8);
@@ -56,7 +52,7 @@ std::string id_of(const Scene& scene, const ClashRow& row) {
 }
 
 struct CsvLine {
-  long line = 0;  // from 1
+  long line = 0;  // number of the line, from 1
   std::vector<std::string> cells;
 };
 
@@ -95,10 +91,6 @@ std::string depth_text(const ClashRow& row) {
   return low == high ? high : (row.depth->lo > 0 ? low + " to " : "at most ") + high;
 }
 
-std::string distance_text(const ClashRow& row) {
-  return row.squared ? short_number(row.distance) : "";
-}
-
 std::string place_text(const ClashRow& row) {
   const Vec3& p = row.witness[0];
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
@@ -109,6 +101,14 @@ bool lists_touches(const ClashTable& table) {
 }
 bool is_hidden(const auto& row, const ClashTable& table) {
   return row.verdict == ClashVerdict::touch && !row.ignored && !lists_touches(table);
+}
+
+/// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
+std::string no_depth_words(const Scene& scene, const ClashRow& row) {
+  const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
+  if (!deep || row.depth) return "";
+  if (row.open) return name_of(scene, *row.open) + " is not closed";
+  return row.proved ? "not asked for" : "no overlap is proved";
 }
 
 std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
@@ -123,7 +123,8 @@ std::string rows_text(const Scene& scene, const ClashRecord& record, const Clash
     out.add({(table.compared ? compared_word(table, k) + std::string(" ") : "") +
                  to_string(row.verdict) + (row.ignored ? " (ignored)" : ""),
              name_of(scene, row.objects.a), name_of(scene, row.objects.b), depth_text(row),
-             row.curve > 0 ? short_number(row.curve) : "", distance_text(row), place_text(row),
+             row.curve > 0 ? short_number(row.curve) : "",
+             row.squared ? short_number(row.distance) : "", place_text(row),
              clash_words(scene, row) + (record.options.depth && row.open
                                             ? "; no depth: " + no_depth_words(scene, row)
                                             : "")});
@@ -266,13 +267,6 @@ std::string clash_words(const Scene& scene, const ClashRow& row) {
   return contact_words(row) + shallow;
 }
 
-std::string no_depth_words(const Scene& scene, const ClashRow& row) {
-  const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
-  if (!deep || row.depth) return "";
-  if (row.open) return name_of(scene, *row.open) + " is not closed";
-  return row.proved ? "not asked for" : "no overlap is proved";
-}
-
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name) {
   const auto fail = [&](const std::string& reason, long line) {
@@ -291,7 +285,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
   if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
-  std::set<Row> old, forgiven;  // forgiven: of old, those of pairs that were ignored then
+  std::set<Row> old, forgiven;  // all rows of the file, and those of pairs that it says are ignored
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
@@ -311,7 +305,8 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   }
   std::map<std::string, std::uint32_t> numbers;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) numbers[scene.objects[o].name] = o;
-  // Pairs that were not examined, and near ones that are ignored, have no rows.
+  // True if the record would have no row of this pair: it was not examined, or it is near and
+  // ignored.
   const auto left_out = [&](const std::string& name_a, const std::string& name_b, bool near) {
     if (!numbers.contains(name_a) || !numbers.contains(name_b)) return false;
     const auto [a, b] = std::minmax({numbers[name_a], numbers[name_b]});

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "commit.h"
@@ -16,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
-// Words for the values of DistancePairs, then of WhichInside; `unknown` (objects meet) has none.
+// The words of DistancePairs and of WhichInside. `unknown` has none: the objects meet.
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 
@@ -79,8 +78,7 @@ std::string inside_cell(const Distance& d) {
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
-/// A line with the least distance of all answers, and its objects; empty if there is only one
-/// answer, since the table shows it.
+/// A line with the least distance of all answers, and its objects; empty if there is one answer.
 std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
   if (distances.size() < 2) return "";
   const auto least = std::min_element(

@@ -1,23 +1,16 @@
-// Turns a record into JSON, its colliding pairs into CSV, its claims into a certificate, and a plan
-// into a table and JSON.
+// Turns a record into JSON, its colliding pairs into CSV, and its claims into a certificate. Turns
+// a plan into a table and into JSON.
 #include "experiments/record/output.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <span>
-#include <utility>
 
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/text.h"
 #include "core/gl/base/context.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
-#include "verify/certificate/certificate.h"
 
 namespace farcull {
 namespace {
@@ -32,14 +25,6 @@ Json view_json(const ViewReport& view) {
   return out;
 }
 
-template <class Value>
-Json json_or_null(const Value& value) {
-  if constexpr (std::is_same_v<Value, std::monostate>)
-    return nullptr;
-  else
-    return value;
-}
-
 // Work of a GL device in drawing.
 Json device_work_json(const CanvasWork& work) {
   if (work.passes == 0) return nullptr;
@@ -48,11 +33,6 @@ Json device_work_json(const CanvasWork& work) {
                           uploaded_bytes, downloaded_bytes));
   out["device_ms"] = json_of(work.known_ms());
   return out;
-}
-
-Json budget_json(const std::vector<ViewReport>& views) {
-  const ViewReport* widest = widest_budget(views);
-  return widest ? view_json(*widest)["budget"] : Json(nullptr);
 }
 
 Json device_json(const Record& record) {
@@ -111,11 +91,6 @@ Json contacts_json(const Record& record) {
   return out;
 }
 
-Json ignored_json(const Record& record) {
-  if (record.options.ignored.empty()) return nullptr;
-  return {{"object_pairs", record.options.ignored.size()}, {"candidates", record.found.ignored}};
-}
-
 // Appends six cells: the ends of a segment, or a point twice.
 void append_ends(const ContactShape& shape, std::string& out) {
   for (const Vec3& end : shape.ends) {
@@ -127,8 +102,8 @@ void append_ends(const ContactShape& shape, std::string& out) {
   }
 }
 
-// Appends a cell with the corners of a polygon that two triangles have in common, all coordinates
-// with blanks between.
+// Appends a cell with the corners of the polygon that two triangles have in common: all
+// coordinates, with blanks between them.
 void append_polygon(const Scene& scene, const TrianglePair& pair, const ContactShape& shape,
                     std::string& out) {
   out += ',';
@@ -166,136 +141,10 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
   return lines;
 }
 
-}  // namespace
-
-Json gl_json(const GlInfo& gl) { return FARCULL_JSON(gl, vendor, renderer, version, glsl); }
-
-Json threads_json(const GlInfo& gl) {
-  return json_if(gl.kind == "software", driver_threads(gl.renderer));
-}
-
-Json pair_json(const Scene& scene, const TrianglePair& pair) {
-  const auto place = [&](std::uint32_t triangle) -> Json {
-    const TrianglePlace at = place_of(scene, triangle);
-    return {{"object", at.object},
-            {"name", scene.objects[at.object].name},
-            {"triangle", at.triangle},
-            {"face", scene.source_face[triangle]}};
-  };
-  return {{"a", place(pair.a)}, {"b", place(pair.b)}};
-}
-
-Json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
-  return json_list(pairs, [&](const TrianglePair& pair) { return pair_json(scene, pair); });
-}
-
-nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
-                                           const FloatingPoint& used) {
-  return {{"callers", environment_json(callers)}, {"used", environment_json(used)}};
-}
-
-Json not_asked_json(const Scene& scene) {
-  const NotAsked unasked = not_asked(scene);
-  return {{"objects", unasked.objects}, {"pairs", unasked.pairs}, {"which", unasked.ranges}};
-}
-
-Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const std::string& hash) {
-  constexpr std::size_t kNamed = 100;
-  Json folded = Json::array();
-  for (const FoldedFace& f : std::span(scene.folded).first(std::min(kNamed, scene.folded.size())))
-    folded.push_back({{"object", scene.objects[f.object].name}, {"face", f.face}});
-  return {{"name", scene.name},
-          {"objects", scene.objects.size()},
-          {"self_objects", self_objects(scene)},
-          {"self_not_asked", not_asked_json(scene)},
-          {"nothing_to_test", text_json(nothing_to_test(scene).reason)},
-          {"triangles", scene.triangles.size()},
-          {"degenerate_triangles", degenerate_triangles},
-          {"folded_polygons", scene.folded.size()},
-          {"folded", folded},
-          {"hash", hash}};
-}
-
-Json stages_json(const std::vector<Stage>& trace) {
-  return json_list(trace, [](const Stage& s) {
-    Json out = {
-        {"name", name_of(s)}, {"ran", s.ran}, {"depends", s.depends}, {"reason", reason_of(s)}};
-    out.update(FARCULL_JSON(s, ms, in, out, unit, draws, queries, draws_saved, queries_saved));
-    return out;
-  });
-}
-
-nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
-  const RunOptions& o = record.options;
-  Json views = nullptr;
-  for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
-  Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
-              {"method", to_string(o.method)},
-              {"method_reason", method_reason(o)}};
-  for (const Option& option : run_options()) {
-    if (!option.value) continue;
-    std::visit([&](const auto& value) { out[option.name] = json_or_null(value); }, option.value(o));
-    if (option.of_drawing && draws(o.method) && !record.found.drew()) out[option.name] = nullptr;
-  }
-  if (record.found.device.cpu) out["query"] = nullptr;
-  const Json rest = {
-      {"promises", record.promise.holds},
-      {"promise_reason", record.promise.reason},
-      {"verdict", verdict_json(record)},
-      {"views", views},
-      {"budget", budget_json(record.found.views())},
-      {"device", device_json(record)},
-      {"device_work", device_work_json(record.found.asked)},
-      {"floating_point", floating_point_json(record.callers, record.used)},
-      {"stages", stages_json(record.trace)},
-      {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},
-      {"object_triangles", json_of(record.found.swept_triangles())},
-      {"candidate_pairs", record.found.count},
-      {"colliding_pairs", record.collisions.pairs.size()},
-      {"neighbour_pairs", record.collisions.neighbour_pairs.size()},
-      {"all_colliding_pairs",
-       record.collisions.pairs.size() + record.collisions.neighbour_pairs.size()},
-      {"neighbours", record.collisions.neighbours},
-      {"contacts", contacts_json(record)},
-      {"ignored", ignored_json(record)},
-      {"limit", json_if(o.limit > 0, o.limit)},
-      {"decided_pairs", record.decided},
-      {"complete", record.complete},
-      {"verification", verification_json(scene, record)},
-      {"at_risk", json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk)},
-      {"at_risk_bare",
-       json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk_bare)},
-      {"no_shortcuts", o.no_shortcuts},
-      {"time_ms", json_of(record.ms)},
-      {"seed", json_of(o.seed)},
-      {"commit", FARCULL_COMMIT}};
-  out.update(rest);
-  return out;
-}
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string pairs_header(const Scene& scene, const PairColumns& columns) {
-  std::string header =
-      columns.numbers ? pair_list_header(columns.numbers->self) : pair_list_header(scene);
-  header.pop_back();
-  if (columns.contacts) header += ",contact";
-  if (columns.segments) header += ",x0,y0,z0,x1,y1,z1,polygon";
-  if (columns.faces) header += ",face_a,face_b";
-  if (columns.names) header += ",name_a,name_b";
-  return header + '\n';
-}
-
-namespace {
-
-// Indices of some sorted pairs, and of the colliding neighbours that come between them in order.
+// A range of Collisions::pairs, and one of the colliding neighbours that come between these pairs
+// in the order of the rows.
 struct RowRange {
-  std::size_t pairs = 0, pairs_end = 0;  // of Collisions::pairs
+  std::size_t pairs = 0, pairs_end = 0;
   std::size_t neighbours = 0, neighbours_end = 0;
 };
 
@@ -381,11 +230,144 @@ std::vector<RowRange> ranges_of(const Collisions& all) {
 
 }  // namespace
 
+Json gl_json(const GlInfo& gl) { return FARCULL_JSON(gl, vendor, renderer, version, glsl); }
+
+Json threads_json(const GlInfo& gl) {
+  return json_if(gl.kind == "software", driver_threads(gl.renderer));
+}
+
+Json pair_json(const Scene& scene, const TrianglePair& pair) {
+  const auto place = [&](std::uint32_t triangle) -> Json {
+    const TrianglePlace at = place_of(scene, triangle);
+    return {{"object", at.object},
+            {"name", scene.objects[at.object].name},
+            {"triangle", at.triangle},
+            {"face", scene.source_face[triangle]}};
+  };
+  return {{"a", place(pair.a)}, {"b", place(pair.b)}};
+}
+
+Json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  return json_list(pairs, [&](const TrianglePair& pair) { return pair_json(scene, pair); });
+}
+
+nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
+                                           const FloatingPoint& used) {
+  return {{"callers", environment_json(callers)}, {"used", environment_json(used)}};
+}
+
+Json not_asked_json(const Scene& scene) {
+  const NotAsked unasked = not_asked(scene);
+  return {{"objects", unasked.objects}, {"pairs", unasked.pairs}, {"which", unasked.ranges}};
+}
+
+Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const std::string& hash) {
+  constexpr std::size_t kNamed = 100;
+  Json folded = Json::array();
+  for (const FoldedFace& f : std::span(scene.folded).first(std::min(kNamed, scene.folded.size())))
+    folded.push_back({{"object", scene.objects[f.object].name}, {"face", f.face}});
+  return {{"name", scene.name},
+          {"objects", scene.objects.size()},
+          {"self_objects", self_objects(scene)},
+          {"self_not_asked", not_asked_json(scene)},
+          {"nothing_to_test", text_json(nothing_to_test(scene).reason)},
+          {"triangles", scene.triangles.size()},
+          {"degenerate_triangles", degenerate_triangles},
+          {"folded_polygons", scene.folded.size()},
+          {"folded", folded},
+          {"hash", hash}};
+}
+
+Json stages_json(const std::vector<Stage>& trace) {
+  return json_list(trace, [](const Stage& s) {
+    Json out = {
+        {"name", name_of(s)}, {"ran", s.ran}, {"depends", s.depends}, {"reason", reason_of(s)}};
+    out.update(FARCULL_JSON(s, ms, in, out, unit, draws, queries, draws_saved, queries_saved));
+    return out;
+  });
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
+  const RunOptions& o = record.options;
+  Json views = nullptr;
+  for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
+  Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
+              {"method", to_string(o.method)},
+              {"method_reason", method_reason(o)}};
+  for (const Option& option : run_options()) {
+    if (!option.value) continue;
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
+            out[option.name] = nullptr;
+          else
+            out[option.name] = value;
+        },
+        option.value(o));
+    if (option.of_drawing && draws(o.method) && !record.found.drew()) out[option.name] = nullptr;
+  }
+  if (record.found.device.cpu) out["query"] = nullptr;
+  const ViewReport* const widest = widest_budget(record.found.views());
+  const Json rest = {
+      {"promises", record.promise.holds},
+      {"promise_reason", record.promise.reason},
+      {"verdict", verdict_json(record)},
+      {"views", views},
+      {"budget", widest ? view_json(*widest)["budget"] : Json(nullptr)},
+      {"device", device_json(record)},
+      {"device_work", device_work_json(record.found.asked)},
+      {"floating_point", floating_point_json(record.callers, record.used)},
+      {"stages", stages_json(record.trace)},
+      {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},
+      {"object_triangles", json_of(record.found.swept_triangles())},
+      {"candidate_pairs", record.found.count},
+      {"colliding_pairs", record.collisions.pairs.size()},
+      {"neighbour_pairs", record.collisions.neighbour_pairs.size()},
+      {"all_colliding_pairs",
+       record.collisions.pairs.size() + record.collisions.neighbour_pairs.size()},
+      {"neighbours", record.collisions.neighbours},
+      {"contacts", contacts_json(record)},
+      {"ignored", o.ignored.empty() ? Json(nullptr)
+                                    : Json{{"object_pairs", o.ignored.size()},
+                                           {"candidates", record.found.ignored}}},
+      {"limit", json_if(o.limit > 0, o.limit)},
+      {"decided_pairs", record.decided},
+      {"complete", record.complete},
+      {"verification", verification_json(scene, record)},
+      {"at_risk", json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk)},
+      {"at_risk_bare",
+       json_if(record.risk.has_value(), record.risk.value_or(PairsAtRisk{}).at_risk_bare)},
+      {"no_shortcuts", o.no_shortcuts},
+      {"time_ms", json_of(record.ms)},
+      {"seed", json_of(o.seed)},
+      {"commit", FARCULL_COMMIT}};
+  out.update(rest);
+  return out;
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string pairs_header(const Scene& scene, const PairColumns& columns) {
+  std::string header =
+      columns.numbers ? pair_list_header(columns.numbers->self) : pair_list_header(scene);
+  header.pop_back();
+  if (columns.contacts) header += ",contact";
+  if (columns.segments) header += ",x0,y0,z0,x1,y1,z1,polygon";
+  if (columns.faces) header += ",face_a,face_b";
+  if (columns.names) header += ",name_a,name_b";
+  return header + '\n';
+}
+
 void give_pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                      const PairColumns& columns, const TextSink& sink) {
   const Rows rows(scene, record, before, columns);
   const std::vector<RowRange> ranges = ranges_of(record.collisions);
-  // Each thread keeps a text, so that its memory is used again.
+  // Each thread fills the same text again and again, which saves allocations.
   std::vector<std::string> texts(chunks_for(ranges.size(), 1));
   for (std::size_t from = 0; from < ranges.size(); from += texts.size()) {
     const std::size_t count = std::min(texts.size(), ranges.size() - from);
@@ -441,8 +423,6 @@ Certificate certificate_of(const Scene& scene, const Record& record, const Whole
   return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance,
                           whole);
 }
-
-// Prints a plan stage by stage, in the words of the record of a run.
 
 std::string decision_of(const Stage& stage) {
   return stage.depends ? "depends" : stage.ran ? "runs" : "left out";

@@ -4,12 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "core/base/fields.h"
 #include "experiments/method/clash.h"
@@ -23,10 +20,8 @@
 
 namespace farcull {
 
-// ---- JSON and CSV of a struct that has fields (core/base/fields.h) ----
-
-/// A value of a record as JSON: an object of its fields, the word of an enumeration, null for an
-/// empty optional, else the value itself. A number that is not finite is written as null.
+/// A value of a record as JSON: an object for a struct that has fields, the word of an enumeration,
+/// null for an empty optional, else the value itself. A number that is not finite becomes null.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -59,7 +54,6 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   }()
 #define FARCULL_JSON_MEMBER(name) out[#name] = ::farcull::json_of(of.name);
 
-/// A JSON list with one(value) for each value.
 template <class Values, class One>
 nlohmann::ordered_json json_list(const Values& values, const One& one) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
@@ -67,46 +61,40 @@ nlohmann::ordered_json json_list(const Values& values, const One& one) {
   return out;
 }
 
-/// The value; null if `counts` is false.
 template <class Value>
 nlohmann::ordered_json json_if(bool counts, const Value& value) {
   return counts ? json_of(value) : nlohmann::ordered_json(nullptr);
 }
 
-/// The text; null if it is empty.
 inline nlohmann::ordered_json text_json(const std::string& text) {
   return json_if(!text.empty(), text);
 }
 
 inline nlohmann::ordered_json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-// ---- records ----
-
 /// The record as JSON. Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
-/// gl_json: names and versions of a GL device. threads_json: the threads of a software device, null
-/// for others.
+/// The names and versions of a GL device.
 nlohmann::ordered_json gl_json(const GlInfo& gl);
+/// The number of threads of a software device; null for other devices.
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
-/// The floating-point environment of the caller and the one in force.
+/// The floating-point environments of the caller and of the run.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// Pairs inside objects that were not tested (verify/certificate/certificate.h): the number of
-/// objects, the number of pairs, and the objects as ranges (first and last).
+/// NotAsked (verify/certificate/certificate.h) of the scene: how many objects are not tested
+/// against themselves, how many pairs are inside them, and the objects as ranges (first and last).
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
-/// Parts of records: the scene; the stages of a trace.
 nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
                                   const std::string& hash);
 nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
-/// Each triangle as a person can find it: its object, its number there and the face of the file
-/// that it comes from.
+/// For each triangle of a pair: its object, its number in the object, and its face of the file.
 nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
-/// A name as a cell of a CSV: in quotes if it has to be.
+/// A text as a cell of a CSV: in quotes if it has to be.
 std::string csv_cell(const std::string& text);
 
 /// Columns of pairs_csv() besides those that every list has, and which rows it writes.
@@ -114,32 +102,29 @@ struct PairColumns {
   bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
   bool contacts = false;  // contact: the kind; the record must have the kinds
   bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of the common segment or point, in world
-                          // units; empty for a polygon or nothing. The record must have them.
-                          // polygon: the corners of a polygon, else empty
+                          // units; else empty. polygon: the corners of a common polygon; else
+                          // empty. The record must have segments
   bool names = false;     // name_a, name_b: of the objects
   std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
-  const ListNumbers* numbers = nullptr;  // set if the scene is a part of another scene; else null
+  const ListNumbers* numbers = nullptr;  // null unless the scene is a part of another scene
 };
 
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; with
-/// colliding neighbours if an object of the scene is tested against itself. More columns come at
-/// the end: contact, the segment and the polygon, the faces, the names.
+/// colliding neighbours if an object is tested against itself. The wanted columns come at the end.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
-/// The same, given to `sink` part by part in order, so that the whole text is never in memory. All
-/// cores make the parts.
+/// Gives pairs_csv() to `sink` part by part, so that the whole text is never in memory. All cores
+/// make the parts.
 void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
                     const TextSink& sink);
-/// The header and the rows of pairs_csv(); `before` comes at the start of each row.
+/// The header and the rows of pairs_csv(); each row begins with `before`.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
 
-/// The certificate of the run: its claims about every pair of the scene, with evidence. Times are
-/// left out, so the same run gives the same text. whole: as for make_certificate().
+/// The certificate of the run: its claims about every pair of the scene, with evidence. It has no
+/// times, so the same run gives the same text. whole: as of make_certificate().
 Certificate certificate_of(const Scene& scene, const Record& record,
                            const WholeScene* whole = nullptr);
-
-// `farcull plan`: a plan as a table and as JSON.
 
 /// One line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
@@ -150,15 +135,12 @@ nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
 /// The plan's decision about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
-// Distances (docs/proximity.md).
-
-/// The distances as JSON. Keys keep their order, so that the same answers give the same text. seed:
-/// the seed of a random scene.
+/// Distances as JSON (docs/proximity.md). seed: of a random scene.
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// The distances as CSV: the names of the columns, and a row for each pair with `before` at its
-/// start.
+/// The distances as CSV: the names of the columns, and a row for each pair that begins with
+/// `before`.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
@@ -166,44 +148,39 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
 /// The distances (only the first of many), the stages and the accounting.
 std::string distances_table(const Scene& scene, const DistanceRecord& record);
 
-/// The verdict of an accounting, in one line without a newline.
 std::string verdict_text(const DistanceAccounting& accounting);
-/// The number of pairs, and how many are in each class.
 std::string accounting_sum(const DistanceAccounting& accounting);
 
-/// The differences between the rows of a record and those of an earlier CSV. Two rows are the same
-/// if they name the same two parts, in any order, and have the same verdict.
+/// The differences between the rows of a record and those of an earlier CSV. Rows are the same if
+/// they name the same two parts, in any order, and have the same verdict.
 struct ClashComparison {
   struct Gone {
     std::string a, b, verdict;
   };
-  std::vector<bool> same;        // per row of the record: whether the file has it
-  std::vector<Gone> gone;        // rows of the file that the record does not have
-  std::uint64_t unexamined = 0;  // such rows of pairs that were left out, so they are not gone
+  std::vector<bool> same;        // for each row of the record: whether the file has it
+  std::vector<Gone> gone;        // rows of the file that the record lacks
+  std::uint64_t unexamined = 0;  // rows that the record lacks since it leaves their pairs out
 };
-/// text: the CSV; name: of the file, for errors. Throws Error if clash_csv() wrote no such text.
+/// text: the CSV; name: of its file. Throws Error if clash_csv() does not write such a text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name);
 
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};        // as for is_clean(); with touch, lists touches
-  std::string unit = {};                         // of the lengths, such as "mm"; empty: not said
-  std::optional<ClashComparison> compared = {};  // with an earlier CSV
+  std::vector<ClashVerdict> failing = {};  // passed to is_clean(); `touch` here also lists touches
+  std::string unit = {};                   // unit of the lengths, such as "mm"; empty: unknown
+  std::optional<ClashComparison> compared = {};  // differences to an earlier CSV
 };
 
-/// For people: the summary, then the rows; rows of pairs that touch only if `failing` has touch.
-/// Lengths have six digits, since the coordinates of a mesh file may be rounded to floats.
+/// For people: the summary, then the rows. Lengths have six digits, since the coordinates of a mesh
+/// file may be rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
-/// What a row says beyond its verdict, such as the kinds of contact.
+/// The words of a row after its verdict, such as the kinds of contact.
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
 /// Whether no pair is a clash, contained, unknown or one of `failing`, and every pair that was
 /// asked for was examined.
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
-
-/// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
-std::string no_depth_words(const Scene& scene, const ClashRow& row);
 
 /// A row for each pair that is not clear, numbers with all digits; then a row for each pair that is
 /// gone (ClashComparison), with only its names and its old verdict.
@@ -211,5 +188,45 @@ std::string clash_csv(const Scene& scene, const ClashRecord& record, const Clash
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
                                   const ClashTable& table = {});
+
+/// A pair of parts over frames (`farcull clash --frames`). Optional values are those of the frames
+/// in which the pair is listed with such a value.
+struct WorstClash {
+  std::string name_a, name_b, id;
+  ClashVerdict verdict = ClashVerdict::clear;  // the most serious one
+  bool ignored = false;
+  long frames = 0, first = 0, last = 0;  // the frames with this verdict: how many, and the ends
+  std::optional<double> depth = {};      // the largest lower bound, if depths are asked for
+  std::optional<double> distance = {};   // the least one; 0 if the surfaces meet
+  std::optional<long> deepest = {}, nearest = {};  // the first frame with `depth`, `distance`
+  FARCULL_FIELDS(name_a, name_b, id, verdict, ignored, frames, first, last, depth, deepest,
+                 distance, nearest)
+};
+
+/// Collects the records of `farcull clash --frames`.
+class ClashFrames {
+ public:
+  /// wanted: how many frames were asked for.
+  explicit ClashFrames(long wanted) : wanted_(wanted) {}
+
+  struct Report {
+    nlohmann::ordered_json head, frame, summary;  // parts of the JSON, like those of FrameReport
+    std::string csv;                              // clash_csv() after a column `frame`
+    std::string text;                             // the number of pairs by verdict
+  };
+  /// The report of a frame; the first one begins with the headers of CSV and text.
+  Report add(const Scene& scene, const ClashRecord& record, const ClashTable& table, long frame);
+  /// For people: the pairs of all frames, the most serious first.
+  std::string text(const ClashTable& table) const;
+
+ private:
+  std::vector<WorstClash> worst() const;
+  bool is_clean() const { return clean_ && frames_ == wanted_; }
+
+  nlohmann::ordered_json head_;
+  std::map<std::pair<std::string, std::string>, WorstClash> pairs_;  // keys: the two names
+  long wanted_ = 0, frames_ = 0;
+  bool clean_ = true;
+};
 
 }  // namespace farcull

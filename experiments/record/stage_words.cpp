@@ -1,9 +1,8 @@
-// A table of the kinds, and switches over the reasons and the steps.
+// The words of kinds are a table, those of reasons and steps are switches.
 #include "experiments/record/stage_words.h"
 
 #include <array>
 #include <map>
-#include <string>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -79,6 +78,9 @@ std::string reason_of(const Stage& stage) {
   const std::string n = grouped(stage.n), m = grouped(stage.m);
   const std::string apart = stage.k ? ", ignored ones apart" : "";
   const std::string moved = stage.k ? ", of which something moved in " + number(*stage.k) : "";
+  const std::string blocks = "pairs of blocks (of at most 16 triangles) whose boxes";
+  const std::string by_tree = ": pairs by a tree over the boxes of all triangles";
+  const std::string of_objects = "; pairs of objects, and objects with themselves: " + m;
   switch (stage.reason) {
     case Reason::none:
       return "";
@@ -94,19 +96,14 @@ std::string reason_of(const Stage& stage) {
              "whole; objects tested against themselves: " +
              m;
     case Reason::block_pairs:
-      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n + moved +
-             "; pairs of objects, and objects with themselves: " + m;
+      return blocks + " overlap: " + n + moved + of_objects;
     case Reason::normal_pairs:
-      return "pairs of blocks (of at most 16 triangles) whose boxes overlap: " + n + moved +
-             "; pairs of objects, and objects with themselves: " + m +
+      return blocks + " overlap: " + n + moved + of_objects +
              "; triangles are compared along their normals as well";
     case Reason::oriented_pairs:
-      return "pairs of blocks (of at most 16 triangles) whose boxes and oriented boxes overlap: " +
-             n + moved + "; pairs of objects, and objects with themselves: " + m;
+      return blocks + " and oriented boxes overlap: " + n + moved + of_objects;
     case Reason::moved_pairs:
-      return "pairs of blocks (of at most 16 triangles) whose boxes, moved with their objects, "
-             "overlap: " +
-             n + "; pairs of objects: " + m;
+      return blocks + ", moved with their objects, overlap: " + n + "; pairs of objects: " + m;
     case Reason::boxes_meet:
       return "pairs of triangles whose boxes overlap: " + n + "; a triangle in none is not drawn";
     case Reason::boxes_decide_little:
@@ -176,17 +173,13 @@ std::string reason_of(const Stage& stage) {
     case Reason::join_all:
       return "boxes of all triangles";
     case Reason::join_uneven:
-      return "triangles lie unevenly, most of them in a small part of their object's box: pairs by "
-             "a tree over the boxes of all triangles";
+      return "triangles lie unevenly, most of them in a small part of their object's box" + by_tree;
     case Reason::join_crowded:
-      return "boxes of too many pairs of objects overlap: pairs by a tree over the boxes of all "
-             "triangles";
+      return "boxes of too many pairs of objects overlap" + by_tree;
     case Reason::join_often:
-      return "boxes of blocks overlap too often, oriented ones too: pairs by a tree over the boxes "
-             "of all triangles";
+      return "boxes of blocks overlap too often, oriented ones too" + by_tree;
     case Reason::join_many_blocks:
-      return "boxes of more than " + n +
-             " pairs of blocks overlap: pairs by a tree over the boxes of all triangles";
+      return "boxes of more than " + n + " pairs of blocks overlap" + by_tree;
     case Reason::predicates:
       return "exact predicates on the candidates";
     case Reason::no_candidates:

@@ -1,10 +1,6 @@
 // The words for stages that people read in tables, JSON, the terminal's progress and the library.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "core/base/stage.h"
 
 namespace farcull {
@@ -17,7 +13,7 @@ std::string reason_of(const Stage& stage);
 std::string level_name(std::uint32_t level);
 /// "triangles", "pairs" or "".
 std::string to_string(Unit unit);
-/// Why a run used no device. Precondition: it used none.
+/// Why a run used no device. Precondition: the run used none.
 std::string no_device_reason(const std::vector<Stage>& trace);
 /// "culling along z, round 2", or the text of the step.
 std::string text_of(const ProgressStep& step);

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/gl/base/context.h"
-#include "core/scene/scene.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
@@ -16,7 +15,7 @@ namespace {
 
 constexpr std::size_t kExamplesShown = 5;
 
-// The lines of an answer, which are shorter than those of tables.
+// Wraps the lines of an answer, which are shorter than those of tables.
 std::string answer(const std::string& text) {
   return wrapped(text, std::min<std::size_t>(80, text_columns()));
 }
@@ -26,56 +25,6 @@ std::string scene_line(const Scene& scene, const Record& record) {
   if (record.options.seed) line += fmt::format(", seed {}", *record.options.seed);
   return line + "\n";
 }
-
-}  // namespace
-
-TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
-  const auto after = std::upper_bound(
-      scene.objects.begin(), scene.objects.end(), triangle,
-      [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next object does, so the last object with this
-  // start is the owner.
-  const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
-  return {owner, triangle - scene.objects[owner].first_triangle};
-}
-
-std::string place_text(const Scene& scene, std::uint32_t triangle) {
-  const TrianglePlace at = place_of(scene, triangle);
-  return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
-}
-
-std::string not_drawn_text(const Record& r) {
-  if (!draws(r.options.method) || r.found.drew()) return "";
-  return r.found.views().empty() ? kNothingToDraw : "too fine for pixels, so all is kept";
-}
-
-std::string folded_text(const Scene& scene) {
-  if (scene.folded.empty()) return "";
-  std::string out = fmt::format(", {} folded", counted(scene.folded.size(), "polygon", "polygons"));
-  const std::size_t shown = std::min(kExamplesShown, scene.folded.size());
-  for (std::size_t k = 0; k < shown; ++k) {
-    const FoldedFace& f = scene.folded[k];
-    out +=
-        fmt::format("{} face {} of {}", k == 0 ? ":" : ",", f.face, scene.objects[f.object].name);
-  }
-  return out + (shown < scene.folded.size() ? ", ..." : "");
-}
-
-std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles) {
-  std::string out =
-      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
-                  counted(scene.triangles.size(), "triangle", "triangles"));
-  if (degenerate_triangles > 0)
-    out += fmt::format(", {} of them degenerate", grouped(degenerate_triangles));
-  return out + folded_text(scene);
-}
-
-std::string more_line(std::size_t all, std::size_t shown) {
-  if (all <= shown) return "";
-  return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
-}
-
-namespace {
 
 std::string device_text(const Record& record) {
   if (record.found.device.cpu) {
@@ -88,13 +37,6 @@ std::string device_text(const Record& record) {
   if (const std::string risk = risk_of_threads(gl.renderer); !risk.empty()) warnings += "; " + risk;
   return fmt::format("{}, {} depth bits, {} subpixel bits{}", gl.renderer,
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
-}
-
-// A line about the device's verdict; empty unless the method's guarantee depends on a device.
-std::string promise_line(const Record& record) {
-  if (!record.promise.verdict) return "";
-  return fmt::format("promise    {}{}\n",
-                     record.promise.holds ? "" : "none: ", record.promise.reason);
 }
 
 std::string method_text(const Record& record) {
@@ -145,22 +87,23 @@ std::string radius_line(const Record& record) {
 // A row of the stage table: one stage, the stages of one view in the first round, or the stages of
 // all later rounds, in which little happens.
 struct Row {
-  std::string key;  // stages with the same key are folded into the row; empty: none is
+  std::string key;  // stages with the same key share the row; empty: one stage
   std::string name;
   std::string note;
   std::vector<std::string> views;  // views of later rounds; or the names of left-out stages
-  Stage sum;                       // ms is the sum, `in` that of the first, `out` of the last
+  Stage sum;  // of all its stages: the sum of ms, the first `in`, the last `out`
 };
 
-// The key of the row that a stage is folded into: its view, or "later rounds"; empty: its own row.
+// The key of the row of a stage: its view, or "later rounds"; empty: the stage has a row of its
+// own.
 std::string key_of(const Stage& stage) {
   if (stage.round == 0) return "";
   if (stage.round == 1 && stage.kind == StageKind::agreement) return "";
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
-// Adds a row for a stage that was left out, or adds the stage to the row before if the reason is
-// the same.
+// Adds a row for a stage that was left out. If the row before has the same reason, adds the stage
+// to that row.
 void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
   if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
@@ -172,7 +115,7 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
 }
 
-// Adds a stage of a round to the row that contains it.
+// Adds a stage of a round to its row.
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
@@ -257,16 +200,7 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-std::string resolution_text(const Record& r) {
-  if (!draws(r.options.method) || !not_drawn_text(r).empty()) return "-";
-  return std::to_string(resolution_of(r.options));
-}
-
-std::string missed_text(const Record& record) {
-  return record.verification ? grouped(record.verification->false_negatives) : "not verified";
-}
-
-// What a run of far without misses says about the radius; empty if that was not asked.
+// How many pairs a smaller radius would lose; empty if that was not asked.
 std::string risk_line(const Record& record) {
   if (!record.risk) return "";
   const auto& [smaller, bare] = *record.risk;
@@ -309,6 +243,52 @@ std::string ignored_line(const Record& record) {
 }
 
 }  // namespace
+
+TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
+  const auto after = std::upper_bound(
+      scene.objects.begin(), scene.objects.end(), triangle,
+      [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
+  // An object without triangles starts where the next object does, so the last object with this
+  // start is the owner.
+  const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
+  return {owner, triangle - scene.objects[owner].first_triangle};
+}
+
+std::string place_text(const Scene& scene, std::uint32_t triangle) {
+  const TrianglePlace at = place_of(scene, triangle);
+  return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
+}
+
+std::string not_drawn_text(const Record& r) {
+  if (!draws(r.options.method) || r.found.drew()) return "";
+  return r.found.views().empty() ? kNothingToDraw : "too fine for pixels, so all is kept";
+}
+
+std::string folded_text(const Scene& scene) {
+  if (scene.folded.empty()) return "";
+  std::string out = fmt::format(", {} folded", counted(scene.folded.size(), "polygon", "polygons"));
+  const std::size_t shown = std::min(kExamplesShown, scene.folded.size());
+  for (std::size_t k = 0; k < shown; ++k) {
+    const FoldedFace& f = scene.folded[k];
+    out +=
+        fmt::format("{} face {} of {}", k == 0 ? ":" : ",", f.face, scene.objects[f.object].name);
+  }
+  return out + (shown < scene.folded.size() ? ", ..." : "");
+}
+
+std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles) {
+  std::string out =
+      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  if (degenerate_triangles > 0)
+    out += fmt::format(", {} of them degenerate", grouped(degenerate_triangles));
+  return out + folded_text(scene);
+}
+
+std::string more_line(std::size_t all, std::size_t shown) {
+  if (all <= shown) return "";
+  return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
+}
 
 const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
   const ViewReport* widest = nullptr;
@@ -388,7 +368,11 @@ std::string not_asked_line(const Scene& scene, const std::string& options) {
 std::string run_heading(const Scene& scene, const Record& record) {
   std::string out =
       "scene      " + scene_line(scene, record) + "method     " + method_text(record) + "\n" +
-      promise_line(record) + "device     " + device_text(record) + "\n" +
+      (record.promise.verdict
+           ? fmt::format("promise    {}{}\n",
+                         record.promise.holds ? "" : "none: ", record.promise.reason)
+           : "") +
+      "device     " + device_text(record) + "\n" +
       not_asked_line(scene, tests_self(record.options.method) ? "--self" : "--method boxes --self");
   if (record.callers != kProved)
     out +=
@@ -482,10 +466,13 @@ std::string comparison_table(const Scene& scene, const std::vector<Compared>& ro
     table.add(
         {to_string(r.options.method) + (form.empty() ? "" : " " + form),
          if_fattened(offsets, r.options.offset), if_fattened(radii, radius_text(r.options.radius)),
-         resolution_text(r), grouped(r.found.count),
+         draws(r.options.method) && not_drawn_text(r).empty()
+             ? std::to_string(resolution_of(r.options))
+             : "-",
+         grouped(r.found.count),
          grouped(r.collisions.pairs.size()) +
              (self ? " + " + grouped(r.collisions.neighbour_pairs.size()) : ""),
-         missed_text(r),
+         r.verification ? grouped(r.verification->false_negatives) : "not verified",
          r.risk  ? grouped(r.risk->at_risk) + " / " + grouped(r.risk->at_risk_bare)
          : risks ? "-"
                  : "",

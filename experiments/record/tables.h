@@ -1,18 +1,14 @@
-// Text for people: aligned tables and short lines. Programs read the JSON (output.h), which holds
-// more.
+// Text for people: aligned tables and short lines. The JSON of output.h holds more, for programs.
 #pragma once
-
-#include <string>
-#include <vector>
 
 #include "experiments/method/run.h"
 
 namespace farcull {
 
-/// The view with the largest budget: the one that texts quote. Null if no view was drawn.
+/// The view with the largest budget, which texts quote. Null if no view was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
-/// A triangle as a person can find it: its object, and its number there.
+/// The object of a triangle, and the number of the triangle in the object.
 struct TrianglePlace {
   std::uint32_t object = 0, triangle = 0;
 };
@@ -23,7 +19,7 @@ std::string place_text(const Scene& scene, std::uint32_t triangle);
 /// Why a scene has no pair of triangles to test.
 struct NothingToTest {
   std::string reason;      // such as "the scene is one object, and ..."; empty: it has a pair
-  bool with_self = false;  // with --self the scene would have a pair
+  bool with_self = false;  // the scene would have a pair with --self
 };
 NothingToTest nothing_to_test(const Scene& scene);
 
@@ -31,12 +27,13 @@ NothingToTest nothing_to_test(const Scene& scene);
 /// method.
 std::string default_method_line(const RunOptions& options);
 
-/// The text in the line of a drawing method if boxes leave nothing to draw.
+/// The words for a drawing method that did not draw, since boxes left nothing.
 inline constexpr const char* kNothingToDraw = "nothing left to draw";
-/// Why a drawing method did not draw, such as kNothingToDraw; empty if it drew, or for others.
+/// Why a drawing method did not draw, such as kNothingToDraw; empty if it drew, and for other
+/// methods.
 std::string not_drawn_text(const Record& record);
-/// The line that names a faster method, for a guaranteed method that draws on the cores of a CPU;
-/// empty for others (docs/results/stages.md).
+/// The line that names a faster method than a guaranteed one that draws on the cores of a CPU
+/// (docs/results/stages.md); empty for other methods.
 std::string faster_line(const RunOptions& options);
 
 /// "298 pairs", or with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62 of
@@ -61,17 +58,16 @@ std::string more_line(std::size_t all, std::size_t shown);
 /// The lines that say what was run, on which device, and what was not tested.
 std::string run_heading(const Scene& scene, const Record& record);
 
-/// A row for each stage: its time, how many items entered and how many were left, and why.
+/// A row for each stage: its time, how many items entered and were left, and its reason.
 std::string stage_table(const std::vector<Stage>& stages);
 
 /// The answer of one run, in lines of at most 80 columns if the words allow it: the pairs, the
-/// accounting, and what was run on which device. `verdict`: lines of the caller, placed before the
-/// accounting.
+/// accounting, the method and the device. verdict: lines of the caller, put before the accounting.
 std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict = "");
-/// The lines that run --verbose adds: the views, the radius, and a row for each stage, with what
-/// was left out and why. The stages of a view share one row, and so do all rounds after the first.
+/// The lines that run --verbose adds: the views, the radius, and a row for each stage, also for
+/// those that were left out. The stages of a view share a row, and so do all rounds after the
+/// first.
 std::string run_details(const Record& record);
-/// run_answer(), then run_details().
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
 /// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was
@@ -84,10 +80,9 @@ std::string accounting_sum(const Accounting& accounting);
 /// A method in a comparison.
 struct Compared {
   Record record;                     // the run with the median time, cull + exact
-  double least_ms = 0, most_ms = 0;  // of all its runs
+  double least_ms = 0, most_ms = 0;  // the extremes of all its runs
   std::size_t runs = 1;
 };
-/// Several methods on one scene, one line for each.
 std::string comparison_table(const Scene& scene, const std::vector<Compared>& rows);
 
 }  // namespace farcull

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <utility>
 
 #include "core/base/text.h"
 
@@ -22,7 +21,7 @@ bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
   });
 }
 
-// The Error for the first of these numbered files that the frame lacks.
+// The Error for the first of these numbered names whose file of this frame does not exist.
 std::optional<Error> missing_file(const std::vector<std::string>& paths, const FrameRange& range,
                                   long frame) {
   for (const std::string& path : paths) {
@@ -31,7 +30,7 @@ std::optional<Error> missing_file(const std::vector<std::string>& paths, const F
       return std::filesystem::exists(numbered(path, number), error);
     };
     if (!is_numbered(path) || exists(frame)) continue;
-    constexpr long kTried = 1000;  // numbers mostly begin at 0 or 1
+    constexpr long kTried = 1000;  // first numbers to try; most files begin at 0 or 1
     long first = exists(range.first) ? range.first : 0;
     while (first < kTried && !exists(first)) ++first;
     long last = first;
@@ -82,8 +81,7 @@ FrameSource::FrameSource(SceneArguments arguments, FrameRange range, bool self)
   }
   if (const std::optional<Error> error = missing_file(names, range_, range_.first)) throw *error;
   if (!built_in) scene_ = load_scene(arguments_, meshes_);
-  const std::vector<std::string> paths = meshes_.numbered_paths();
-  if (paths.empty()) {
+  if (meshes_.numbered_paths().empty()) {
     throw Error("--frames", "nothing in the scene moves",
                 "put %d or %04d in place of the number in the name of a mesh, or name one of " +
                     moving_names());
@@ -95,13 +93,14 @@ FrameSource::FrameSource(MovingScene moving) : built_in_(std::move(moving)) {}
 const Scene& FrameSource::at(long frame) {
   if (!built_in_) {
     meshes_.set_frame(frame);
-    if (const std::optional<Error> error = missing_at(frame)) throw *error;
+    if (const std::optional<Error> error = missing_file(meshes_.numbered_paths(), range_, frame))
+      throw *error;
     Scene now = load_scene(arguments_, meshes_);
     if (now.triangles == scene_.triangles) now.triangles.swap(scene_.triangles);
     scene_ = std::move(now);
     for (Object& object : scene_.objects) object.self = object.self || self_;
   } else if (arguments_.ignore) {
-    scene_ = built_in_->at(frame);  // the copies stay in the same memory
+    scene_ = built_in_->at(frame);  // a copy, in the same memory in each frame
     ignore_more(scene_, arguments_, first_ ? UnknownName::refused : UnknownName::passed_over);
   }
   const Scene& scene = built_in_ && !arguments_.ignore ? built_in_->at(frame) : scene_;
@@ -117,14 +116,10 @@ const Scene& FrameSource::at(long frame) {
   return scene;
 }
 
-std::optional<Error> FrameSource::missing_at(long frame) const {
-  return missing_file(meshes_.numbered_paths(), range_, frame);
-}
-
 std::optional<Error> FrameSource::missing() const {
-  if (meshes_.numbered_paths().empty()) return std::nullopt;
-  for (long frame = range_.first; frame <= range_.last; ++frame) {
-    if (std::optional<Error> error = missing_at(frame)) return error;
+  const std::vector<std::string> paths = meshes_.numbered_paths();
+  for (long frame = range_.first; !paths.empty() && frame <= range_.last; ++frame) {
+    if (std::optional<Error> error = missing_file(paths, range_, frame)) return error;
   }
   return std::nullopt;
 }

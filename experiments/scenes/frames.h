@@ -1,26 +1,17 @@
 // A scene that moves, frame by frame.
 //
 // In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
-// same memory, so a backend can see what it has to send again. If the topology changes, nothing of
-// the previous frame is reused.
+// same memory, so that a device needs only the new vertices.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull {
 
-/// Frames first to last, both included; 0 <= first <= last. A built-in motion along a path has last
-/// + 1 frames in all, so 30:59 is the second half of a path that is divided into 60 frames.
+/// Frames `first` to `last`, both included; 0 <= first <= last. A built-in motion along a path has
+/// last + 1 frames in all, so 30:59 is the second half of a path with 60 frames.
 struct FrameRange {
   long first = 0;
   long last = 0;
@@ -33,10 +24,9 @@ FrameRange parse_frames(const std::string& text);
 /// A scene that depends on the number of a frame.
 class FrameSource {
  public:
-  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or mesh files
-  /// on the command line or in a scene file, some with %d or %04d (the frame) in their names. self:
-  /// every object is tested against itself. Throws Error if nothing moves, or as load_scene() does
-  /// for the first frame.
+  /// arguments: as of load_scene(); a built-in scene that moves, or meshes of which some have %d or
+  /// %04d, the frame, in their names. self: every object is tested against itself. Throws Error if
+  /// nothing moves, or as load_scene() does for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
   /// For a moving scene that the caller has made.
   explicit FrameSource(MovingScene moving);
@@ -46,8 +36,8 @@ class FrameSource {
   /// the file if a mesh cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
-  /// The Error that at() would throw for the first frame of the range that lacks a file now; empty
-  /// if no file is missing.
+  /// The Error that at() would throw for the first frame of the range that lacks a file. Empty if
+  /// no file is missing.
   std::optional<Error> missing() const;
 
   /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
@@ -57,15 +47,12 @@ class FrameSource {
   FrameNotes notes() const;
 
  private:
-  // The Error that at(frame) would throw if a mesh file of the frame is missing now.
-  std::optional<Error> missing_at(long frame) const;
-
   SceneArguments arguments_;
   FrameRange range_;
   bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
-  Scene scene_;  // at the current frame; empty for a built-in motion without ignored objects
+  Scene scene_;  // the current frame; empty for a built-in motion without ignored objects
   // The topology in the previous call.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;

@@ -1,22 +1,16 @@
-// Patterns are compared with the names of all objects; each colon of a text is tried as the one
-// between two names.
-#include "experiments/scenes/ignored.h"
+// Finds the objects that are not tested against each other, by patterns of their names.
+#include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
-#include <string_view>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace farcull {
 
 namespace {
-
-// Names are looked up in each scene: the names of objects may differ from frame to frame.
 
 constexpr const char* kRemedy =
     "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
@@ -26,13 +20,14 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// True if text[at] is a backslash that makes the next character a part of a name.
+/// True if text[at] is a backslash that makes the next character, a comma, colon or *, a part of a
+/// name.
 bool escapes(std::string_view text, std::size_t at) {
   return text[at] == '\\' && at + 1 < text.size() &&
          std::string_view(",:*").find(text[at + 1]) != std::string_view::npos;
 }
 
-/// The first `character` at or after `from` that has no such backslash before it; npos if there is
+/// The position of the first `character` at or after `from` that is not escaped; npos if there is
 /// none.
 std::size_t find_plain(std::string_view text, char character, std::size_t from = 0) {
   for (std::size_t k = from; k < text.size(); ++k) {
@@ -73,18 +68,17 @@ std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view patte
   return out;
 }
 
-/// Whether the pattern is ambiguous: it is the name of an object and also matches others.
+/// True if the pattern is the name of one of the `objects` that it matches, but not of all.
 bool doubtful(const Scene& scene, std::string_view pattern,
               const std::vector<std::uint32_t>& objects) {
-  return std::ranges::any_of(objects,
-                             [&](std::uint32_t o) { return scene.objects[o].name == pattern; }) &&
-         !std::ranges::all_of(objects,
-                              [&](std::uint32_t o) { return scene.objects[o].name == pattern; });
+  const auto named = std::ranges::count_if(
+      objects, [&](std::uint32_t o) { return scene.objects[o].name == pattern; });
+  return named > 0 && static_cast<std::size_t>(named) < objects.size();
 }
 
 constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
 
-/// The end of a remedy: the name that was probably meant, and some of those that there are.
+/// The end of a remedy: the name that was probably meant, and some names of objects.
 std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> known;
@@ -111,9 +105,8 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
   return in_order(std::move(out));
 }
 
-constexpr const char* kOneObject = "names one object, and a pair has two";
-
-/// Appends the pairs of objects that names.text stands for.
+/// Appends the pairs of objects that names.text stands for. Each colon is tried as the one between
+/// the two names.
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
@@ -146,7 +139,7 @@ void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
     return;
   if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
   if (places > 1) fail("can be divided at more than one colon");
-  if (first.size() == 1 && first == second) fail(kOneObject);
+  if (first.size() == 1 && first == second) fail("names one object, and a pair has two");
   const std::vector<ObjectPair> pairs = pairs_of(first, second);
   out.insert(out.end(), pairs.begin(), pairs.end());
 }

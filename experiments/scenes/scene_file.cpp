@@ -1,29 +1,23 @@
-// Reads and writes scene files as JSON. Reading checks the syntax first, to name the line of an
-// error, then reads the values one by one.
+// Reads scene files, mesh files and built-in scenes. A scene file is JSON: its syntax is checked
+// first, to name the line of an error, then its values are read one by one.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <numbers>
 #include <set>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/scene.h"
-#include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_values.h"
 
 namespace farcull {
 namespace {
@@ -31,11 +25,11 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
-// Linux opens no file by a longer path (PATH_MAX), and std::filesystem::path may need 36 bytes of
-// memory for each byte of a path.
+// Linux opens no file by a longer path (PATH_MAX), for which std::filesystem::path would need much
+// memory.
 constexpr std::size_t kMaxPathBytes = 4096;
 
-// Iterates over the characters of a text and counts its lines.
+// Iterates over the characters of a text, and counts its lines.
 class Reading {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -51,30 +45,23 @@ class Reading {
     if (*at_++ == '\n') ++*line_;
     return *this;
   }
-  Reading operator++(int) {
-    const Reading before = *this;
-    ++*this;
-    return before;
-  }
   bool operator==(const Reading& other) const { return at_ == other.at_; }
-  bool operator!=(const Reading& other) const { return at_ != other.at_; }
 
  private:
   const char* at_;
   long* line_;
 };
 
-// Lines of the keys "mesh" in "objects", and of the pairs in "ignore".
+// The lines of the keys "mesh" in "objects", and of the pairs in "ignore".
 struct Lines {
   std::vector<long> meshes, ignored;
 };
 
 // Reads only the syntax of a text. Finds what json::parse does not report: the place of the first
-// error, keys that occur twice (json::parse silently keeps the last one), and the lines of the
-// meshes and of the pairs of ignored objects.
+// error, a key that occurs twice, and Lines.
 class Syntax : public nlohmann::json_sax<json> {
  public:
-  // line: the line of the character that was read last.
+  // line: of the character that was read last.
   explicit Syntax(const long& line) : line_(line) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -124,27 +111,30 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string last_;  // the last key of the outermost object
 };
 
-// Names of meshes are relative to the scene file.
+// The path of a mesh, whose name is relative to the scene file.
 std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
-class SceneFile : SceneValues {
+// Reads the values of a scene file. A function that takes a value and its place in the file, as in
+// objects[1].scale, throws Error naming both the file and the place if the value is not of that
+// type.
+class SceneFile {
  public:
   SceneFile(std::string path, Lines lines, MeshCache& meshes)
-      : SceneValues(std::move(path)), lines_(std::move(lines)), meshes_(meshes) {}
+      : path_(std::move(path)), lines_(std::move(lines)), meshes_(meshes) {}
 
-  // `added` is called after each object.
+  // Calls added() after each object.
   SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
     check_keys(root, "", {"name", "objects", "ignore"});
-    const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path);
+    const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path_);
     const std::string form = "write \"objects\": [{\"mesh\": FILE}, ...]";
     require(root.contains("objects"), "objects", "is missing", form);
     const json& objects = root["objects"];
     require(objects.is_array(), "objects", "must be an array", form);
     require(!objects.empty(), "objects", "is empty", form);
-    SceneBuilder builder(clean_name(name) + meshes_.note(), path);
+    SceneBuilder builder(clean_name(name) + meshes_.note(), path_);
     for (std::size_t i = 0; i < objects.size(); ++i) {
       add_object(objects[i], i, builder);
       if (added) added(builder);
@@ -152,7 +142,8 @@ class SceneFile : SceneValues {
     return builder;
   }
 
-  // Precondition: the scene has the objects of the file. Only their names are read.
+  // The pairs of ignored objects. Precondition: the scene has the objects of the file; it needs
+  // only their names.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
                                        UnknownName lacking = UnknownName::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
@@ -164,7 +155,7 @@ class SceneFile : SceneValues {
       require(pair.is_array() && pair.size() == 2 && pair[0].is_string() && pair[1].is_string(),
               place, "must be an array of two names", form);
       const std::vector<ObjectPair> named =
-          pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path, place,
+          pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path_, place,
                         lines_.ignored.at(k), lacking);
       out.insert(out.end(), named.begin(), named.end());
     }
@@ -192,12 +183,12 @@ class SceneFile : SceneValues {
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
     const bool self = object.contains("self") && truth(object["self"], place + ".self");
     try {
-      builder.add(meshes_.get(mesh_path(path, mesh)), name, split, placement, self);
+      builder.add(meshes_.get(mesh_path(path_, mesh)), name, split, placement, self);
     } catch (const Error& error) {
       if (error.reason != "the file does not exist") throw;
       throw Error(error.where, error.reason,
                   fmt::format("{}: {}.mesh in line {} of {} names this one", error.remedy, place,
-                              lines_.meshes.at(number), path));
+                              lines_.meshes.at(number), path_));
     }
   }
 
@@ -210,6 +201,143 @@ class SceneFile : SceneValues {
     return Split::kNone;
   }
 
+  template <class Value>
+  Value typed(const json& value, const std::string& place, bool right, const char* type,
+              const char* remedy) const {
+    require(right, place, fmt::format("is of type {}, not {}", value.type_name(), type), remedy);
+    return value.get<Value>();
+  }
+
+  std::string text(const json& value, const std::string& place) const {
+    return typed<std::string>(value, place, value.is_string(), "a string", "write it in quotes");
+  }
+
+  bool truth(const json& value, const std::string& place) const {
+    return typed<bool>(value, place, value.is_boolean(), "true or false",
+                       "write true or false, without quotes");
+  }
+
+  double number(const json& value, const std::string& place) const {
+    const auto x =
+        typed<double>(value, place, value.is_number(), "a number", "give a finite number");
+    require(std::isfinite(x), place, "is not finite", "give a finite number");
+    return x;
+  }
+
+  Vec3 vec3(const json& value, const std::string& place) const {
+    require(value.is_array() && value.size() == 3, place, "must be an array of 3 numbers",
+            "write it as [X, Y, Z]");
+    Vec3 v;
+    for (std::size_t i = 0; i < 3; ++i)
+      v[static_cast<int>(i)] = number(value[i], fmt::format("{}[{}]", place, i));
+    return v;
+  }
+
+  void check_keys(const json& object, const std::string& place,
+                  std::initializer_list<std::string_view> known) const {
+    for (const auto& item : object.items()) {
+      require(std::ranges::find(known, item.key()) != known.end(),
+              (place.empty() ? "" : place + ".") + clean_name(item.key()), "is an unknown key",
+              fmt::format("use only {}", fmt::join(known, ", ")));
+    }
+  }
+
+  void require(bool condition, const std::string& place, const std::string& reason,
+               const std::string& remedy) const {
+    if (!condition) throw Error(path_, place.empty() ? reason : place + " " + reason, remedy);
+  }
+
+  Placement placement_of(const json& object, const std::string& place) const {
+    Placement out;
+    if (object.contains("matrix")) {
+      for (const char* other : {"scale", "rotate", "translate"}) {
+        require(!object.contains(other), place + "." + other, "stands beside a matrix",
+                "give the matrix alone, or scale, rotate and translate");
+      }
+      out.matrix = matrix(object["matrix"], place + ".matrix");
+    }
+    if (object.contains("scale")) {
+      const json& scale = object["scale"];
+      const std::string at = place + ".scale";
+      const std::string form = "give a number or an array of 3 numbers, none of them 0";
+      require(scale.is_number() || scale.is_array(), at, "must be a number or an array of 3", form);
+      out.scale = scale.is_array() ? vec3(scale, at) : Vec3(Vec3::Constant(number(scale, at)));
+      require((out.scale->array() != 0).all(), at, "is 0, which leaves no mesh", form);
+    }
+    if (object.contains("rotate")) {
+      const json& rotate = object["rotate"];
+      const std::string at = place + ".rotate";
+      const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
+      require(rotate.is_object(), at, "must be a JSON object", form);
+      if (rotate.contains("quaternion")) {
+        check_keys(rotate, at, {"quaternion"});
+        const json& q = rotate["quaternion"];
+        const std::string of = at + ".quaternion";
+        const std::string four =
+            "write {\"w\": W, \"x\": X, \"y\": Y, \"z\": Z} or [X, Y, Z, W], not all of them 0";
+        std::array<double, 4> values{};
+        if (q.is_object()) {
+          check_keys(q, of, {"w", "x", "y", "z"});
+          for (std::size_t i = 0; i < 4; ++i) {
+            const std::string key(1, "xyzw"[i]);
+            require(q.contains(key), of + "." + key, "is missing", four);
+            values[i] = number(q[key], of + "." + key);
+          }
+        } else {
+          require(q.is_array() && q.size() == 4, of, "is neither four named numbers nor an array",
+                  four);
+          for (std::size_t i = 0; i < 4; ++i)
+            values[i] = number(q[i], fmt::format("{}[{}]", of, i));
+        }
+        require(values != std::array<double, 4>{}, of, "is 0", four);
+        out.rotate = Placement::Rotation{.quaternion = values};
+      } else {
+        out.rotate = rotation(rotate, at, form);
+      }
+    }
+    if (object.contains("translate"))
+      out.translate = vec3(object["translate"], place + ".translate");
+    return out;
+  }
+
+  Placement::Rotation rotation(const json& rotate, const std::string& at,
+                               const std::string& form) const {
+    check_keys(rotate, at, {"axis", "angle"});
+    require(rotate.contains("axis"), at + ".axis", "is missing", form);
+    require(rotate.contains("angle"), at + ".angle", "is missing", form);
+    const Placement::Rotation out{.axis = vec3(rotate["axis"], at + ".axis"),
+                                  .angle = number(rotate["angle"], at + ".angle")};
+    require((out.axis.array() != 0).any(), at + ".axis", "is the zero vector",
+            "give a direction of any length");
+    if (std::abs(out.angle) > 2 * std::numbers::pi)
+      add_reading_notes(path_, {fmt::format("{}: {} rad: angles are in radians", at, out.angle)});
+    return out;
+  }
+
+  // The upper three rows of a matrix of 4 x 4 numbers, row by row.
+  std::array<std::array<double, 4>, 3> matrix(const json& value, const std::string& place) const {
+    const std::string form =
+        "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
+    require(value.is_array() && value.size() == 4, place, "must be an array of 4 rows", form);
+    std::array<std::array<double, 4>, 3> out{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::string row = fmt::format("{}[{}]", place, i);
+      require(value[i].is_array() && value[i].size() == 4, row, "must be an array of 4 numbers",
+              form);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double x = number(value[i][k], fmt::format("{}[{}]", row, k));
+        if (i < 3) out[i][k] = x;
+        require(i < 3 || x == (k == 3 ? 1 : 0), row, "must be [0, 0, 0, 1]", form);
+      }
+    }
+    std::array<double, 9> linear{};
+    for (std::size_t k = 0; k < 9; ++k) linear[k] = out[k / 3][k % 3];
+    require(is_invertible(linear), place, "has no inverse, so it flattens the mesh",
+            "give a matrix whose determinant is not 0");
+    return out;
+  }
+
+  std::string path_;
   Lines lines_;
   MeshCache& meshes_;
 };
@@ -241,7 +369,7 @@ Parsed parsed(const std::string& text, const std::string& path) {
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const Parsed file = parsed(text, path);
   SceneFile reader(path, file.lines, meshes);
-  const bool later_frame = !meshes.numbered_paths().empty();  // the first frame fills these
+  const bool later_frame = !meshes.numbered_paths().empty();  // the first frame fills the cache
   Scene scene = reader.read(file.root).finish();
   if (file.root.contains("ignore")) {
     scene.ignored = reader.read_ignored(
@@ -250,16 +378,16 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
   return scene;
 }
 
-// Memory for the meshes that a streamed scene file keeps.
+// Bytes of meshes that a streamed scene file keeps, since the file may name them again.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
                                     const TakePart& take) {
-  // Size of the parts since the cache was emptied: an upper bound on the size of its meshes.
-  std::size_t bytes = 0;
+  std::size_t bytes =
+      0;  // of the parts since the cache was emptied; its meshes have at most as many
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
-  Scene names;  // the names of all objects of the whole scene
+  Scene names;  // has the names of all objects of the whole scene, and nothing else
   SceneFile reader(path, file.lines, meshes);
   reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
@@ -277,9 +405,10 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// The name of each file without extension; with its folder if another file has the same name.
+// The names of objects: that of each file without its extension, with its folder if another file
+// has the same name.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
-  std::map<std::string, std::set<std::string>> called;  // by name without extension
+  std::map<std::string, std::set<std::string>> called;  // the paths, by the name without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);
   std::vector<std::string> out;
   for (const std::string& path : paths) {
@@ -291,8 +420,8 @@ std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   return out;
 }
 
-// A scene of mesh files. Checks every extension first, so that a bad last argument is refused
-// before minutes of reading. `added` is called after each file.
+// A scene of mesh files. Checks all extensions first, so that a bad last argument is refused before
+// minutes of reading. Calls added() after each file.
 SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes,
                              const std::function<void(SceneBuilder&)>& added = {}) {
   for (const std::string& path : paths) {
@@ -312,14 +441,6 @@ SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& m
     if (added) added(builder);
   }
   return builder;
-}
-
-void stream_meshes(const std::vector<std::string>& paths, MeshCache& meshes, const TakePart& take) {
-  scene_of_meshes(paths, meshes, [&](SceneBuilder& builder) {
-    meshes.clear();  // frees the mesh: the builder has a copy
-    Scene part = builder.take_part();
-    take(part);
-  });
 }
 
 MeshReading reading_of(const SceneArguments& arguments) {
@@ -412,7 +533,11 @@ std::vector<ObjectPair> stream_scene(const SceneArguments& given, const TakePart
   } else if (arguments.size() == 1 && is_scene_file(arguments[0])) {
     return stream_file(arguments[0], meshes, take);
   } else if (arguments.size() > 1 || (arguments.size() == 1 && has_mesh_extension(arguments[0]))) {
-    stream_meshes(arguments, meshes, take);
+    scene_of_meshes(arguments, meshes, [&](SceneBuilder& builder) {
+      meshes.clear();  // frees the mesh: the builder has a copy
+      Scene part = builder.take_part();
+      take(part);
+    });
     return {};
   }
   Scene whole = load_scene(given);
@@ -445,19 +570,6 @@ std::vector<std::string> meshes_of_scene_file(const std::string& path) {
 Scene parse_scene_file(const std::string& text, const std::string& path) {
   MeshCache meshes;
   return parse(text, path, meshes);
-}
-
-std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
-                            const std::vector<std::pair<std::string, std::string>>& ignored) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
-  for (const SceneFileObject& object : objects) {
-    Json& out = list.emplace_back(Json{{"name", object.name}, {"mesh", object.mesh}});
-    if (object.self) out["self"] = true;
-  }
-  Json out = {{"name", name}, {"objects", list}};
-  if (!ignored.empty()) out["ignore"] = ignored;
-  return out.dump(2) + "\n";
 }
 
 void require_known(const std::string& name) {

@@ -2,23 +2,55 @@
 // whole, or part by part for callers that cannot hold all of it.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
 #include <initializer_list>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
 #include "core/base/stage.h"
-#include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/ignored.h"
 #include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
+
+// Objects that are not tested against each other, by the names on the command line and in files
+// (ignored.cpp).
+
+/// How a name that no object has is treated. It is passed over after the first frame, since objects
+/// may appear and disappear.
+enum class UnknownName { refused, passed_over };
+
+/// The pairs of an object that the pattern `first` matches and a different object that `second`
+/// matches. A * in a pattern stands for any characters. Throws Error if a pattern is the name of an
+/// object and matches others too; and unless `lacking` is passed_over, if a pattern matches no
+/// object, or if both match the same single object. Errors name `where` and `line`, and call the
+/// pair `what`.
+std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
+                                      const std::string& second, const std::string& where,
+                                      const std::string& what, long line = 0,
+                                      UnknownName lacking = UnknownName::refused);
+
+/// Two groups of objects by their names.
+struct IgnoredNames {
+  std::string text;   // such as "link*:gripper"; * stands for any characters
+  std::string where;  // --ignore, or the file
+  long line = 0;      // line of the file, from 1; 0 for --ignore
+};
+
+/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming the option if a pair is
+/// empty. Here and in files, \ before a comma, colon or * makes it a character of the name.
+std::vector<IgnoredNames> parse_ignored(const std::string& list,
+                                        const std::string& option = "--ignore");
+/// The pairs of a text file, one per line. Empty lines, lines that begin with # and a byte order
+/// mark are passed over. Throws Error naming the file if it cannot be read or names no pair.
+std::vector<IgnoredNames> read_ignored(const std::string& path);
+/// The pairs of a list and of a file, as --ignore and --ignore-file give them; either may be empty.
+std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
+                                        const std::optional<std::string>& file);
+
+/// The pairs of an object of the first group and a different object of the second, in_order(). A
+/// name may hold colons: each colon is tried as the one between the groups. Throws Error naming
+/// `where` and the line if a text has no colon, if objects match both groups at two of its colons,
+/// and as pairs_between() does.
+std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
+                                        UnknownName lacking = UnknownName::refused);
 
 /// A scene as a command line describes it. Only names are required.
 struct SceneArguments {
@@ -26,10 +58,10 @@ struct SceneArguments {
   SceneArguments(std::vector<std::string> of) : names(std::move(of)) {}
   SceneArguments(std::initializer_list<std::string> of) : names(of) {}
 
-  std::vector<std::string> names;     // of files, or of a built-in scene
-  std::optional<std::string> weld;    // as parse_weld() takes it (load.h)
-  std::optional<std::string> format;  // of a mesh on standard input, "-": named_format()
-  std::optional<std::string> ignore;  // as parse_ignored() takes it
+  std::vector<std::string> names;     // names of files, or the name of a built-in scene
+  std::optional<std::string> weld;    // read by parse_weld() (load.h)
+  std::optional<std::string> format;  // format of a mesh on standard input; read by named_format()
+  std::optional<std::string> ignore;  // read by parse_ignored()
 
   /// The arguments as words of a command line.
   std::vector<std::string> words() const;
@@ -38,7 +70,7 @@ struct SceneArguments {
 /// The scene that the arguments name. Their names are one of
 /// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz). Each is an object with the
 ///   name of its file without extension, and with its folder if another file has the same name;
-/// - one built-in scene, perhaps with suffixes (builtin/scenes.h);
+/// - one built-in scene, perhaps with numbers and suffixes (builtin/scenes.h);
 /// - one scene file, JSON:
 ///     {"name": "two-bunnies", "objects": [
 ///       {"name": "a", "mesh": "bunny00.off"},
@@ -46,24 +78,18 @@ struct SceneArguments {
 ///        "translate": [0.02, 0.0026, 0.0014], "split": "none",
 ///        "self": false}],
 ///      "ignore": [["a", "bunny00"], ["link*", "base"]]}
-///   Only `objects` and `mesh` must be there. `mesh` is relative to the scene file. `scale` is a
-///   number or an array of 3, none of them 0; negative ones mirror. Angles are in radians about an
-///   axis through the origin. A mesh is scaled, then rotated, then translated, in double; absent
-///   steps are skipped, so that the doubles of the mesh stay as they are. `split` is "none",
-///   "groups" (the groups of an OBJ) or "components" (triangles connected through shared vertices).
-///   `self` is true or false (the default): whether the object is tested against itself as well;
-///   with a split, each part is. Different parts are always tested against each other. `ignore`
-///   lists pairs of objects that are not tested against each other, by their names in the scene; a
-///   * stands for any characters, and the pattern for every object that it matches
-///   (Scene::ignored).
-/// A mesh that is named several times is read once. Names are completed as SceneBuilder says.
-/// Throws Error if an argument cannot be read or is not of this form. The Error names the file. In
-/// a scene file it also names the line (wrong syntax, names of ignored objects) or the place of a
-/// wrong value, such as objects[1].rotate.axis. If meshes are welded, the name of the scene says
-/// so. Scene::ignored has the pairs of the scene file and those of `ignore`.
+///   Only `objects` and `mesh` must be there (docs/scenes.md has all keys). `mesh` is relative to
+///   the scene file. Angles are in radians about an axis through the origin. A mesh is placed as
+///   Placement says. `split` is "none", "groups" (the groups of an OBJ) or "components" (triangles
+///   connected through shared vertices). `self`: whether the object, or each part of it, is tested
+///   against itself as well. `ignore`: pairs of objects that are not tested against each other, by
+///   patterns of their names in the scene.
+/// A mesh that is named several times is read once. If meshes are welded, the name of the scene
+/// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error if
+/// an argument cannot be read or is not of this form. The Error names the file; in a scene file
+/// also the line, or the place of a wrong value, such as objects[1].rotate.axis.
 Scene load_scene(const SceneArguments& arguments);
-/// Throws Error if `weld` or `format` is given, but no named mesh can be affected by it. Called by
-/// load_scene() and stream_scene().
+/// Throws Error if `weld` or `format` is given, but no named mesh can be affected by it.
 void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
 /// ignored_objects().
@@ -81,7 +107,6 @@ std::vector<std::string> meshes_of_scene_file(const std::string& path);
 /// relative to it.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
-/// An object in a scene file to be written, without a placement.
 struct SceneFileObject {
   std::string name, mesh;
   bool self = false;
@@ -90,8 +115,8 @@ struct SceneFileObject {
 std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
                             const std::vector<std::pair<std::string, std::string>>& ignored);
 
-/// Throws Error if load_scene({name}) is sure to fail: `name` is neither a built-in scene for
-/// parse_scene_name() nor a file. Files of a name with a frame's number (%d) are not looked for.
+/// Throws Error if `name` is neither a built-in scene for parse_scene_name() nor a file, so that
+/// load_scene({name}) would fail. Does not look for files of a name with a frame's number (%d).
 void require_known(const std::string& name);
 
 /// Receives a part of a scene: some consecutive whole objects, as a valid scene with the name of
@@ -101,11 +126,11 @@ using TakePart = std::function<void(Scene& part)>;
 /// Calls take() with one part after the other. Together they are load_scene(arguments): the same
 /// objects, names, triangles and doubles in the same order; only the indices of vertices start at 0
 /// in each part. A part is a mesh file, an object of a scene file, or some objects of the built-in
-/// scene `field`; every other built-in scene, or one with suffixes, is a single part. Memory: the
-/// largest part with its file, up to 256 MiB of meshes that a scene file may name again, and the
-/// names of the objects of mesh and scene files. Returns the pairs of objects that the scene file
-/// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
-/// perhaps after some parts, and what take() throws. Precondition: `ignore` is not given.
+/// scene `field`; any other built-in scene is a single part. Memory: the largest part with its
+/// file, up to 256 MiB of meshes that a scene file may name again, and the names of objects.
+/// Returns the pairs of objects that the scene file ignores, in the numbers of the whole scene;
+/// parts ignore none. Throws Error as load_scene() does, perhaps after some parts, and what take()
+/// throws. Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
 
 // Scenes as files (write_scene.cpp): meshes with 17 significant digits, so that every double is
@@ -118,12 +143,11 @@ struct WrittenScene {
   std::uint64_t bytes = 0;
 };
 
-/// Writes each object as NAME.off, with the vertices that it uses and 17 significant digits. Writes
-/// scene.json, whose scene has the same scene_hash(). NAME is the object's name, in which
-/// everything but letters, digits, '.' and '-' is replaced; a number is added if two names are
-/// equal. Creates the last part of `folder` if it does not exist; replaces existing files, as other
-/// outputs do; writes scene.json last. If the system refuses a path, removes the new files and
-/// throws Error naming the path. Precondition: every object has a triangle.
+/// Writes each object as NAME.off, with the vertices that it uses, and then scene.json, whose scene
+/// has the same scene_hash(). NAME is the object's name, in which everything but letters, digits,
+/// '.' and '-' is replaced; a number is added if two names are equal. Creates the last part of
+/// `folder` if it does not exist; replaces existing files. If the system refuses a path, removes
+/// the new files and throws Error naming the path. Precondition: every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

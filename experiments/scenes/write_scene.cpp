@@ -3,20 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
-#include "experiments/scenes/ignored.h"
-#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/system/output_file.h"
 
@@ -25,7 +18,8 @@ namespace {
 
 constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
 
-// Writes files to a folder. The destructor removes what is new unless keep() was called.
+// Writes files to a folder. Unless keep() was called, the destructor removes the files and the
+// folder that are new.
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -69,7 +63,7 @@ class Folder {
   WrittenScene written_;
 };
 
-// A unique name for each object, valid for a file.
+// For each object, the name of its file without an ending; no two are equal.
 std::vector<std::string> file_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -88,7 +82,6 @@ std::vector<std::string> file_names(const Scene& scene) {
   return names;
 }
 
-// The triangles of an object.
 MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
   if (object.triangle_count == 0)
     throw std::logic_error("mesh_write: object '" + object.name + "' has no triangle");
@@ -114,6 +107,19 @@ std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scen
 }
 
 }  // namespace
+
+std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
+                            const std::vector<std::pair<std::string, std::string>>& ignored) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const SceneFileObject& object : objects) {
+    Json& out = list.emplace_back(Json{{"name", object.name}, {"mesh", object.mesh}});
+    if (object.self) out["self"] = true;
+  }
+  Json out = {{"name", name}, {"objects", list}};
+  if (!ignored.empty()) out["ignore"] = ignored;
+  return out.dump(2) + "\n";
+}
 
 WrittenScene write_scene(const Scene& scene, const std::string& folder) {
   Folder out(folder);

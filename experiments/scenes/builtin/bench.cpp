@@ -1,14 +1,10 @@
-// Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Blobs
-// of the field are drawn one after the other, so a part needs only the state of the random numbers
-// that earlier parts left. Also scenes that one number takes to an extreme: slivers of any aspect,
-// gaps of any number of ulps, stacks of sheets at any distance, triangles of any ratio of sizes.
+// Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Also
+// scenes that one number takes to an extreme: slivers of any aspect, gaps of any number of ulps,
+// stacks of sheets at any distance, and triangles of any ratio of sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -19,16 +15,14 @@ using namespace shapes;
 
 namespace {
 
-// ---- the field ----
-
 constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
 constexpr double kSpacing = 1.8;           // distance of neighbouring cells; each has one blob
 constexpr double kJitter = 0.3;            // largest shift of a blob in its cell, along each axis
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Makes blobs of kFieldBlob triangles each: the number of blobs, at least one, that comes nearest
-// to the wanted number of triangles.
+// Makes the blobs of a field one after the other: as many, at least one, as come nearest to the
+// wanted number of triangles.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -68,12 +62,12 @@ class Blobs {
 
 // ---- needles ----
 
-constexpr double kLength = 4700;  // of a needle
+constexpr double kLength = 4700;  // length of a needle
 constexpr double kWidth = 0.002;
 constexpr double kBending = 1e-4;  // largest angle of a needle with Frame::along, radians
 constexpr double kSpan = 24000;    // extent of a layer across its needles
 constexpr double kShear = 1;       // shift of a needle along itself per distance across
-constexpr double kGap = 1;         // between the two layers
+constexpr double kGap = 1;         // distance of the two layers
 
 // An orthonormal frame whose first axis is the direction of needles.
 struct Frame {
@@ -102,8 +96,8 @@ Vec3 in_layer(const Frame& frame, int object, Random& random) {
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// The needles of each object take the frames in turn. Every eighth needle of the second object is
-// moved so that it crosses a needle of the first.
+// Two layers. The needles of each take the frames in turn. Every eighth needle of the second layer
+// is moved so that it crosses a needle of the first.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -134,6 +128,35 @@ BuiltScene make_field(const SceneParameters& parameters, std::uint64_t seed) {
   validate(scene, scene.name);
   const Motion motion = drift(scene);
   return {std::move(scene), motion};
+}
+
+// A random unit vector perpendicular to another one.
+Vec3 across(const Vec3& along, Random& random) {
+  for (;;) {
+    const Vec3 out = along.cross(random.direction());
+    if (out.norm() > 0.1) return out / out.norm();
+  }
+}
+
+// A triangle with a longest side of 1 and a height over it of 1 / aspect, in a random direction.
+Corners sliver(double aspect, Random& random) {
+  const Vec3 along = random.direction();
+  const Vec3 start = -0.5 * along;
+  return {start, start + along,
+          start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
+}
+
+// An equilateral triangle about the origin, in a random direction.
+Corners equilateral(double side, Random& random) {
+  const Vec3 along = random.direction();
+  const Vec3 other = across(along, random);
+  const double high = side * std::sqrt(0.75);
+  return {-0.5 * side * along - high / 3 * other, 0.5 * side * along - high / 3 * other,
+          2 * high / 3 * other};
+}
+
+Vec3 normal_of(const Corners& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
 }
 
 }  // namespace
@@ -173,48 +196,13 @@ std::vector<BuiltinScene> bench_scenes() {
   };
 }
 
-// Scenes that one number takes to an extreme.
-
-namespace {
-
-// A random unit vector perpendicular to another one.
-Vec3 across(const Vec3& along, Random& random) {
-  for (;;) {
-    const Vec3 out = along.cross(random.direction());
-    if (out.norm() > 0.1) return out / out.norm();
-  }
-}
-
-// A triangle with a longest side of 1 and a height over it of 1 / aspect, in a random direction.
-Corners sliver(double aspect, Random& random) {
-  const Vec3 along = random.direction();
-  const Vec3 start = -0.5 * along;
-  return {start, start + along,
-          start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
-}
-
-// An equilateral triangle about the origin, in a random direction.
-Corners equilateral(double side, Random& random) {
-  const Vec3 along = random.direction();
-  const Vec3 other = across(along, random);
-  const double high = side * std::sqrt(0.75);
-  return {-0.5 * side * along - high / 3 * other, 0.5 * side * along - high / 3 * other,
-          2 * high / 3 * other};
-}
-
-Vec3 normal_of(const Corners& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-}
-
-}  // namespace
-
 BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   const double aspect = parameters.second;
   Random random(seed);
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three in four cross the first object's sliver; the fourth is off it by twice its height.
+    // Three slivers in four cross that of the first object; the fourth is off by twice its height.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -230,8 +218,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> large, little;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
-    // Each large triangle gets eight small ones: every other one crosses it, the rest are two small
-    // sides away from it.
+    // Each large triangle gets eight small ones. Every other one crosses it, and the rest are two
+    // small sides away from it.
     for (int k = 0; k < 8; ++k) {
       Vec3 at = inner_point(large.back(), random);
       if (k % 2 == 1) at += 2 * small * normal_of(large.back());
@@ -241,11 +229,11 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// The sheets have the slope z = x/4 + y/8. Their places and tilts are multiples of gap / 8, and the
-// gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
+// The sheets have the slope z = x/4 + y/8. Their heights and tilts are multiples of gap / 8, and
+// the gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
-  constexpr std::uint32_t kCells = 8;  // of a sheet, along a side
+  constexpr std::uint32_t kCells = 8;  // cells along a side of a sheet
   const Mesh shape = grid(kCells);
   SceneBuilder scene("stack", "stack");
   for (std::uint64_t s = 0; s < parameters.size; ++s) {
@@ -274,8 +262,9 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // u and v count eighths of the cell along two axes, rise counts quarters along the third axis.
-    // Without the slope u / 32 + v / 64 a view would see some triangles edge-on, with no image.
+    // A point of the cell: u and v count eighths of the cell along two axes, and `rise` quarters
+    // along the third axis. Without the slope u / 32 + v / 64 a view along an axis would see some
+    // triangles edge-on, and they would have no image.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

@@ -2,8 +2,6 @@
 // more finely; the triangles of the funnel around it stay large.
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -19,19 +17,20 @@ std::uint32_t cells_for(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
 }
 
-// The funnel stands upright: a pipe below, a cone above. The cloth hangs in it, a square whose
+// The funnel stands upright, with a pipe below and a cone above. The cloth in it is a square whose
 // middle was pulled down the pipe. The unit of length is half the side of the cloth.
-constexpr double kCap = 0.22;    // pleats grow from 0.3 to 1.3 times this from the cloth's middle
+constexpr double kCap =
+    0.22;  // pleats grow between 0.3 and 1.3 times this distance from the middle
 constexpr double kPipe = 0.62;   // distance from the cloth's middle at which the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
 
-// Mean radius and height of the cloth at each distance from its middle, and the pleats there. Seen
-// from above, they are a sine-generated curve: its direction swings by +-`swing` radians, so that
-// it is as long as the cloth there but advances only as far as the mean radius allows.
+// The cloth at one distance from its middle. Seen from above, its pleats are a sine-generated
+// curve: the direction swings by +-`swing` radians, so that the curve is as long as the cloth, but
+// advances only as far as the mean radius allows.
 struct Ring {
-  double radius = 0, height = 0;
+  double radius = 0, height = 0;             // means
   std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of length 1
 };
 
@@ -39,7 +38,8 @@ constexpr std::uint32_t kSteps = 64;  // steps of a pleat in Ring::pleat
 constexpr std::uint32_t kRings = 600;
 constexpr double kReachOfCloth = 1.5;  // last ring; the corners of the square are at sqrt(2)
 
-// Mean of cos(swing sin(u)): the Bessel function J0, which falls from 1 to 0 on [0, 2.4].
+// The mean of cos(swing sin(u)) over u. It is the Bessel function J0, and falls from 1 to 0 if the
+// swing goes from 0 to 2.4.
 double advance(double swing) {
   double sum = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) sum += std::cos(swing * std::sin(kTurn * k / kSteps));
@@ -57,7 +57,7 @@ std::vector<std::array<double, 2>> pleat_of(double wanted) {
     const double turned = lo * std::sin(kTurn * (k + 0.5) / kSteps);
     out[k + 1] = {out[k][0] + std::cos(turned) / kSteps, out[k][1] + std::sin(turned) / kSteps};
   }
-  // Moves the curve so that its mean distance outward is 0. The curve goes outward first.
+  // Moves the curve, so that its mean distance outward is 0.
   double mean = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) mean += out[k][1] / kSteps;
   for (auto& [along, outward] : out) outward -= mean;
@@ -103,7 +103,7 @@ Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven)
   };
   const double radius = (1 - t) * table[k].radius + t * table[k + 1].radius;
   const double height = (1 - t) * table[k].height + t * table[k + 1].height;
-  const double length = kTurn * s / kPleats;  // of a pleat
+  const double length = kTurn * s / kPleats;  // length of a pleat
   const double pitch = s == 0 ? 1 : std::min(1.0, radius / s);
   const double angle = kTurn * ((begun + at(0) / pitch - uneven) / kPleats);
   const double out = radius + length * at(1);
@@ -116,7 +116,7 @@ struct FunnelGrid {
   std::uint64_t triangles() const { return 2ull * around * (pipe_rings + cone_rings); }
 };
 
-// A surface of revolution around all of the points, `gap` away from the nearest.
+// A surface of revolution around all of the points, and `gap` away from the nearest point.
 Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid& quads) {
   const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
   const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);

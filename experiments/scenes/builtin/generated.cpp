@@ -2,7 +2,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -59,8 +58,7 @@ Scene make_random_soup(std::uint64_t seed) {
   return scene.finish();
 }
 
-constexpr std::uint64_t kAxial =
-    0x9e3779b97f4a7c15;  // seed ^ kAxial is the seed of the slivers along the axes
+constexpr std::uint64_t kAxial = kGolden;  // seed ^ kAxial is the seed of slivers along the axes
 
 Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
 
@@ -101,7 +99,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
     // One of four slivers has a random place, two cross a sliver of the first object, and one is
-    // moved off such a sliver by twice the smaller width.
+    // moved off a sliver of the first object by twice the smaller width.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -113,8 +111,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Along the axes: each sliver of one object lies along x, y or z. One sliver of the other object
-  // crosses it, and also lies along x, y or z; all nine combinations occur in turn.
+  // Two objects along the axes: each sliver of the one crosses a sliver of the other. Each lies
+  // along x, y or z; all nine combinations occur in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;
@@ -141,7 +139,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
 Scene make_degenerate() {
   constexpr double kHair = 0x1p-40;
   const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  // Every pair touches or crosses, with integer coordinates; each line's comment says how.
+  // Each pair touches or crosses as the comment says. Most coordinates are whole numbers.
   const std::vector<std::pair<Corners, Corners>> cases = {
       {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
       {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge
@@ -171,9 +169,8 @@ Scene make_degenerate() {
       {face, {Vec3(1, 1, -2), Vec3(1, 1, 2), Vec3(1 + kHair, 1, 2)}},  // sliver through face
       {face, {Vec3(1, 1, 0), Vec3(1, 3, 4), Vec3(1 + kHair, 3, 4)}},   // sliver, vertex on face
   };
-  // Each case appears three times in a grid of cells: as it is, and with the second triangle a hair
-  // higher and lower. Cells are integers apart, and a hair is far above an ulp there, so every
-  // coordinate is exact.
+  // Each case appears three times in a grid of cells: as it is, and with the second triangle higher
+  // and lower by kHair, 2^-40. This is far above an ulp, so every coordinate is exact.
   std::vector<Corners> first;
   std::vector<Corners> second;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -191,8 +188,8 @@ Scene make_ground(std::uint64_t seed) {
   Random random(seed);
   SceneBuilder scene("ground", "ground");
   for (int i = 0; i < 5; ++i) {
-    // Centres lie about one radius above the ground: some blobs are sunk into it, some touch
-    // nothing.
+    // The centre lies about one radius above the ground, so that some blobs are sunk into it and
+    // others touch nothing.
     const Vec3 at(1.6 * i - 3.2, random.between(-1, 1), random.between(0.7, 1.5));
     const Mesh mesh = blob(3, random);
     scene.add(mesh, "blob" + std::to_string(i), Split::kNone, random.anywhere(at));

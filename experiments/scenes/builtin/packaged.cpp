@@ -1,18 +1,13 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks. Two use the dragon of the papers,
-// with its triangles divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha, VRST
-// 2004), or it breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware
-// 2003).
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Two are scenes of the papers with a
+// dragon, whose triangles are divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha,
+// VRST 2004), or it breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
+// Hardware 2003).
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <numbers>
-#include <string>
-#include <utility>
 
-#include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -41,8 +36,7 @@ constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
 
-// Scales the second mesh to the diagonal of the first and moves the centre of its box to that of
-// the first.
+// A placement that gives the second mesh the diagonal of the first, and the centre of its box.
 Placement onto(const Mesh& first, const Mesh& second) {
   const double scale = diagonal(bounds(first)) / diagonal(bounds(second));
   return {.scale = Vec3(Vec3::Constant(scale)),
@@ -101,19 +95,19 @@ constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times of the first an
 struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;
-  Vec3 middle;      // of its box
-  double late = 0;  // time at which it comes off
-  Vec3 way;         // of its flight, per unit of time
-  Vec3 axis;        // that it turns about
+  Vec3 middle;      // middle of its box
+  double late = 0;  // the time when it comes off
+  Vec3 way;         // velocity, without that of falling
+  Vec3 axis;        // axis of its rotation
   double turn = 0;  // radians per unit of time
 };
 
 struct Breaking {
   std::string name;
   Mesh dragon;
-  std::vector<std::uint32_t> piece_of;  // per triangle
-  std::vector<Piece> pieces;            // in the order in which they come off; the last one stays
-  double height = 0;                    // of the dragon
+  std::vector<std::uint32_t> piece_of;  // the piece of each triangle
+  std::vector<Piece> pieces;  // first the piece that comes off first; the last piece stays
+  double height = 0;          // height of the dragon
 };
 
 // The piece of all triangles for which `takes` is true.
@@ -130,9 +124,9 @@ Piece part_of(const Mesh& mesh, const Takes& takes) {
   return piece;
 }
 
-// Breaks the dragon up. The centres of kPieces random triangles are the seeds of the pieces; each
-// triangle belongs to the piece with the nearest seed. Pieces come off in the order of the distance
-// of their seeds from the hit, the dragon's highest point.
+// Breaks the dragon up. The centres of kPieces random triangles are the seeds of the pieces. Each
+// triangle belongs to the piece with the nearest seed. The dragon is hit at its highest point;
+// pieces come off in the order of the distances of their seeds from it.
 std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   shapes::Random random(seed);
   auto out = std::make_shared<Breaking>();
@@ -178,8 +172,8 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   return out;
 }
 
-// Sets the topology after the first `off` pieces have come off: the rest of the dragon, then these
-// pieces.
+// Makes the scene after the first `off` pieces have come off: the rest of the dragon, then these
+// pieces, at rest.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();
@@ -196,7 +190,7 @@ void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
 void break_at(const Breaking& dragon, double time, Scene& scene) {
   std::size_t off = 0;  // the last piece stays
   while (off + 1 < kPieces && dragon.pieces[off].late <= time) ++off;
-  // The number of objects determines the topology.
+  // If the number of objects is right, so are the triangles.
   if (scene.objects.size() != off + 1) set_topology(dragon, off, scene);
   std::size_t v = scene.vertices.size();
   for (std::size_t s = 0; s < off; ++s) v -= dragon.pieces[s].part.vertices.size();

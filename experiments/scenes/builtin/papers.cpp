@@ -1,13 +1,10 @@
-// Scenes that move. Generated versions of the papers' scenes: deforming cylinders and torii
-// (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall from a
-// tree and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004). Shapes, counts and
-// kinds of motion are those of the papers, the rest is ours. One more scene has open sheets.
+// Scenes that move. Most are generated versions of scenes of the papers: deforming cylinders and
+// torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall
+// from a tree and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004). Shapes, counts
+// and kinds of motion are those of the papers. One more scene has open sheets.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/cloth/cloth.h"
@@ -19,12 +16,12 @@ using namespace shapes;
 
 namespace {
 
-// The path of an object through a box and back.
+// The path of an object through a box and back, from time 0 to 1.
 struct Way {
   Vec3 centre;
-  Vec3 reach;  // from the centre, along each axis
-  Vec3 phase;  // in turns
-  Vec3 axis;   // that the object turns about
+  Vec3 reach;  // largest distance from the centre along each axis
+  Vec3 phase;  // phases of the motion along the axes, in turns
+  Vec3 axis;   // axis of its rotation
   double turns = 1;
   double swell = 0;  // phase of its deformation, in turns
 
@@ -69,8 +66,8 @@ BuiltScene on_their_ways(const std::string& name, const std::string& object, con
   return halfway(std::move(built));
 }
 
-// An open tube of radius 1 about the z axis from z = 0 to 1: rings of `around` vertices, 2 * around
-// * along triangles. Vertex i * around + j is at height i / along.
+// An open tube of radius 1 about the z axis from z = 0 to 1, of along x around cells of two
+// triangles. Vertex i * around + j is at height i / along.
 Mesh tube(std::uint32_t around, std::uint32_t along) {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -91,7 +88,8 @@ Mesh tube(std::uint32_t around, std::uint32_t along) {
   return finished(std::move(vertices), std::move(triangles));
 }
 
-// Steps along and around a torus with about this many triangles, in nearly square cells.
+// The numbers of steps along and around a torus with about this many triangles. Prefers numbers
+// that give exactly as many.
 std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
   const std::uint64_t cells = triangles / 2;
   const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
@@ -157,8 +155,8 @@ Mesh make_tree(Random& random) {
 Mesh make_leaf() {
   Mesh leaf = grid(10);
   for (Vec3& p : leaf.vertices) {
-    const double u = p.x();          // from stem to tip
-    const double v = 2 * p.y() - 1;  // from side to side
+    const double u = p.x();          // 0 at the stem, 1 at the tip
+    const double v = 2 * p.y() - 1;  // -1 and 1 at the sides
     const double width = 0.01 + 0.25 * u * (1 - u);
     p = Vec3(0.24 * (u - 0.5), width * v, 0.03 * (1 - 4 * (u - 0.5) * (u - 0.5)) + 0.02 * v * v);
   }
@@ -167,11 +165,11 @@ Mesh make_leaf() {
 
 struct Leaf {
   Vec3 from;
-  double late = 0;   // time at which the leaf comes off
+  double late = 0;   // the time when the leaf comes off
   double sway = 0;   // largest way to the side
-  double phase = 0;  // of the sway, in turns
-  Vec3 axis;
-  double turns = 0;  // per unit of time, while it falls
+  double phase = 0;  // phase of the sway, in turns
+  Vec3 axis;         // axis of its rotation
+  double turns = 0;  // turns per unit of time, while it falls
 };
 
 // size: cylinders.
@@ -201,7 +199,7 @@ BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
   return on_their_ways(
       "torii", "torus", torus(1, 0.3, around, across), std::move(ways),
       [around = around, across = across](std::size_t i, const Vec3& p, double swell, double time) {
-        const double u = kTurn * static_cast<double>(i / across) / around;  // along the ring
+        const double u = kTurn * static_cast<double>(i / across) / around;  // angle along the ring
         const Vec3 ring(std::cos(u), std::sin(u), 0);
         const double wave = 1 + 0.25 * std::sin(3 * u + kTurn * (time + swell));
         const double lift = 0.2 * std::sin(2 * u - kTurn * (time + swell));
@@ -222,7 +220,7 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
     builder.add(shape, "leaf" + std::to_string(i));
     Leaf leaf;
     const double turn = kTurn * random.unit();
-    const double far = 1.6 * std::sqrt(random.unit());  // from the trunk
+    const double far = 1.6 * std::sqrt(random.unit());  // distance from the trunk
     const double height = random.between(1.6, 4.6);
     leaf.from = Vec3(far * std::cos(turn), far * std::sin(turn), height);
     leaf.late = random.between(0, 0.3);
@@ -249,16 +247,16 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
 }
 
 // ---- sheets for which no argument about closed meshes holds: they are open, three triangles meet
-// at some edges, and the stack is too close for a depth buffer of 24 bits to separate them ----
+// at some edges, and they are too close to each other for a depth buffer of 24 bits ----
 
-constexpr std::uint32_t kCells = 18;  // along a side, which is 1 long
+constexpr std::uint32_t kCells = 18;  // cells along a side; the side is 1 long
 constexpr double kGrain = 0x1p-40;    // heights are multiples of it
 
 std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; }
 
-// A square of 18 by 18 cells of two triangles. Flaps of 12 by 1 cells rise from the middle of its
-// grid lines i = 6 and i = 12, over the cells beyond: three triangles meet at these edges. The
-// raised vertices come after those of the grid.
+// A square of 18 by 18 cells of two triangles, with two flaps of 12 by 1 cells. A flap is joined to
+// the grid line i = 6 or i = 12, so that three triangles meet at its edges, and lies over the next
+// row of cells. The flaps' vertices come after those of the grid; make_shells() raises them.
 Mesh sheet() {
   auto [vertices, triangles, source_face, group, group_names, folded, notes] = grid(kCells);
   for (const std::uint32_t line : {6u, 12u}) {
@@ -279,8 +277,9 @@ Mesh sheet() {
 double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
 
 // size: sheets. All heights are multiples of 2^-40 below 2^10, so that sums with the gap, 2^-34,
-// are exact: a sheet of the stack is an exact translate of the one below it and never meets it. The
-// flaps never meet the sheet above: they rise only by half a gap, over cells with the same corners.
+// are exact. So a sheet of the stack is an exact copy of the one below it, moved up, and never
+// meets it. The flaps rise by half a gap over cells with the same corners, and do not meet the
+// sheet above.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();

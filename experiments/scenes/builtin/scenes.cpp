@@ -8,56 +8,12 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
-#include <string_view>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/view/view.h"
-#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
-
-// Assembles the entries of built-in scenes, and moves objects. Each motion keeps the vertices at
-// rest, and writes the vertices at an instant.
-
-Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
-                  const Mesh& other, const Placement& placement) {
-  SceneBuilder scene(name, name);
-  scene.add(one, first);
-  scene.add(other, second, Split::kNone, placement);
-  return scene.finish();
-}
-
-BuiltScene halfway(BuiltScene built) {
-  FrameNotes none;
-  built.motion({.frame = 0, .time = 0.5}, built.scene, none);
-  return built;
-}
-
-SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&)) {
-  return [make, motion](const SceneParameters&) {
-    BuiltScene built{make(), {}};
-    built.motion = motion(built.scene);
-    return built;
-  };
-}
-
-BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
-                   const char* description, std::uint32_t objects, std::uint32_t triangles,
-                   const char* motion, const SceneSize& size, const SceneSecond& second,
-                   bool costly, bool topology_changes) {
-  BuiltinScene out{name, description, objects, triangles, motion};
-  if (size.most > 0) out.size = size;
-  if (!second.what.empty()) out.second = second;
-  out.costly = costly;
-  out.topology_changes = topology_changes;
-  if (seed > 0) out.seed = seed;
-  out.build = [make, seed](const SceneParameters& p) { return make(p, p.seed.value_or(seed)); };
-  return out;
-}
-
 namespace {
 
 constexpr std::uint64_t kDriftSeed = 8;
@@ -67,7 +23,7 @@ struct ObjectAtRest {
   std::vector<std::uint32_t> vertices;  // each vertex once
 };
 
-// The vertices of the scene without frames, and its objects.
+// The scene without frames. A motion keeps it, and computes the vertices of each instant from it.
 struct Rest {
   std::vector<Vec3> vertices;
   std::vector<ObjectAtRest> parts;
@@ -92,56 +48,8 @@ std::shared_ptr<const Rest> rest_of(const Scene& scene) {
   return rest;
 }
 
-}  // namespace
-
-Motion pass_through(const Scene& scene) {
-  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
-    const double width = rest->parts[0].box.hi.x() - rest->parts[0].box.lo.x();
-    const double by = 2.2 * (0.5 - now.time) * width;
-    for (const std::uint32_t v : rest->parts[1].vertices) {
-      out.vertices[v] = rest->vertices[v];
-      out.vertices[v].x() += by;
-    }
-  };
-}
-
-Motion pulse(const Scene& scene) {
-  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
-    for (std::size_t o = 0; o < rest->parts.size(); ++o) {
-      const ObjectAtRest& part = rest->parts[o];
-      const Vec3 middle = centre(part.box);
-      const double radius = (part.box.hi.z() - part.box.lo.z()) / 2;
-      const double phase = 0.25 * static_cast<double>(o);
-      for (const std::uint32_t v : part.vertices) {
-        const Vec3 from = rest->vertices[v] - middle;
-        const double breath = 0.15 * std::sin(shapes::kTurn * (now.time + phase));
-        const double wave =
-            0.05 * std::sin(shapes::kTurn * (2 * now.time + 1.5 * from.z() / radius));
-        out.vertices[v] = middle + (1 + breath + wave) * from;
-      }
-    }
-  };
-}
-
-Motion drift(const Scene& scene) {
-  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
-    shapes::Random random(kDriftSeed);
-    for (const ObjectAtRest& part : rest->parts) {
-      const Vec3 way = random.direction();
-      if (part.box.is_empty()) continue;
-      const Vec3 by = std::sin(shapes::kTurn * now.time) * diagonal(part.box) * way;
-      for (const std::uint32_t v : part.vertices) out.vertices[v] = rest->vertices[v] + by;
-    }
-  };
-}
-
-// ---- the list ----
-
-namespace {
-
 constexpr const char* kSeedSuffix = "@seed";
 
-// The first number of a name, or the usual one.
 std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
   const SceneSize& range = *entry.size;
   const std::optional<std::uint64_t> size = parse_number<std::uint64_t>(word);
@@ -156,7 +64,7 @@ std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const 
 double second_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
   const SceneSecond& range = *entry.second;
   const std::optional<double> value = parse_number<double>(word);
-  // Written so that NaN is refused.
+  // Refuses NaN too.
   if (!value || !(*value >= range.least && *value <= range.most)) {
     throw Error(name, quote_token(word) + " is no " + range.what,
                 fmt::format("give {:g} to {:g}, as in {}:{}:{:g}", range.least, range.most,
@@ -200,7 +108,105 @@ std::uint64_t seed_of_suffix(const BuiltinScene& entry, const std::string& name,
   return *seed;
 }
 
+SceneChange moved_far(const Scene& scene) {
+  const double step = 1e6 * diagonal(bounds(scene)) / std::sqrt(3.0);
+  return {.scale = 1, .translate = Vec3::Constant(step), .ground = {}};
+}
+
+SceneChange on_ground(const Scene& scene) {
+  const Box box = bounds(scene);
+  assert(!box.is_empty());
+  return {.ground = shapes::square(centre(box), 1000 * diagonal(box))};
+}
+
+BuiltScene built_for(const SceneRequest& request, const std::string& name) {
+  if (request.entry->motion.empty())
+    throw Error(name, "nothing in the scene moves", "name one of " + moving_names());
+  BuiltScene built = request.entry->build(request.parameters);
+  built.scene.name = name;
+  return built;
+}
+
 }  // namespace
+
+Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
+                  const Mesh& other, const Placement& placement) {
+  SceneBuilder scene(name, name);
+  scene.add(one, first);
+  scene.add(other, second, Split::kNone, placement);
+  return scene.finish();
+}
+
+BuiltScene halfway(BuiltScene built) {
+  FrameNotes none;
+  built.motion({.frame = 0, .time = 0.5}, built.scene, none);
+  return built;
+}
+
+SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&)) {
+  return [make, motion](const SceneParameters&) {
+    BuiltScene built{make(), {}};
+    built.motion = motion(built.scene);
+    return built;
+  };
+}
+
+BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
+                   const char* description, std::uint32_t objects, std::uint32_t triangles,
+                   const char* motion, const SceneSize& size, const SceneSecond& second,
+                   bool costly, bool topology_changes) {
+  BuiltinScene out{name, description, objects, triangles, motion};
+  if (size.most > 0) out.size = size;
+  if (!second.what.empty()) out.second = second;
+  out.costly = costly;
+  out.topology_changes = topology_changes;
+  if (seed > 0) out.seed = seed;
+  out.build = [make, seed](const SceneParameters& p) {
+    return make.make(p, p.seed.value_or(seed));
+  };
+  return out;
+}
+
+Motion pass_through(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    const double width = rest->parts[0].box.hi.x() - rest->parts[0].box.lo.x();
+    const double by = 2.2 * (0.5 - now.time) * width;
+    for (const std::uint32_t v : rest->parts[1].vertices) {
+      out.vertices[v] = rest->vertices[v];
+      out.vertices[v].x() += by;
+    }
+  };
+}
+
+Motion pulse(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    for (std::size_t o = 0; o < rest->parts.size(); ++o) {
+      const ObjectAtRest& part = rest->parts[o];
+      const Vec3 middle = centre(part.box);
+      const double radius = (part.box.hi.z() - part.box.lo.z()) / 2;
+      const double phase = 0.25 * static_cast<double>(o);
+      for (const std::uint32_t v : part.vertices) {
+        const Vec3 from = rest->vertices[v] - middle;
+        const double breath = 0.15 * std::sin(shapes::kTurn * (now.time + phase));
+        const double wave =
+            0.05 * std::sin(shapes::kTurn * (2 * now.time + 1.5 * from.z() / radius));
+        out.vertices[v] = middle + (1 + breath + wave) * from;
+      }
+    }
+  };
+}
+
+Motion drift(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    shapes::Random random(kDriftSeed);
+    for (const ObjectAtRest& part : rest->parts) {
+      const Vec3 way = random.direction();
+      if (part.box.is_empty()) continue;
+      const Vec3 by = std::sin(shapes::kTurn * now.time) * diagonal(part.box) * way;
+      for (const std::uint32_t v : part.vertices) out.vertices[v] = rest->vertices[v] + by;
+    }
+  };
+}
 
 SceneParameters BuiltinScene::usual() const {
   return {.size = size ? size->usual : 0, .second = second ? second->usual : 0};
@@ -275,21 +281,6 @@ Scene make_builtin_scene(const std::string& name) {
   return scene;
 }
 
-namespace {
-
-SceneChange moved_far(const Scene& scene) {
-  const double step = 1e6 * diagonal(bounds(scene)) / std::sqrt(3.0);
-  return {.scale = 1, .translate = Vec3::Constant(step), .ground = {}};
-}
-
-SceneChange on_ground(const Scene& scene) {
-  const Box box = bounds(scene);
-  assert(!box.is_empty());
-  return {.ground = shapes::square(centre(box), 1000 * diagonal(box))};
-}
-
-}  // namespace
-
 const std::vector<SceneSuffix>& scene_suffixes() {
   static const std::vector<SceneSuffix> suffixes = {
       {"@far", "moved by 1e6 of its diagonals along (1, 1, 1)", moved_far},
@@ -319,18 +310,6 @@ Scene transformed(Scene scene, double scale, const Vec3& translate) {
   apply({.scale = scale, .translate = translate, .ground = {}}, scene);
   return scene;
 }
-
-namespace {
-
-BuiltScene built_for(const SceneRequest& request, const std::string& name) {
-  if (request.entry->motion.empty())
-    throw Error(name, "nothing in the scene moves", "name one of " + moving_names());
-  BuiltScene built = request.entry->build(request.parameters);
-  built.scene.name = name;
-  return built;
-}
-
-}  // namespace
 
 bool has_motion(const std::string& name) {
   const BuiltinScene* const entry = find_builtin_scene(name);

@@ -1,74 +1,64 @@
 // A square cloth that falls on a fixed sphere: springs along the edges, bending across them,
 // contact with friction. The cloth has no contact with itself, so its folds pass through each
-// other: the scene has intersecting triangles within one moving object. docs/cloth.md derives it.
+// other, and the scene has intersecting triangles within one moving object.
 //
 // A step is implicit Euler, as the minimum of a convex function of the new positions (Gast et al.
-// 2015, "Optimization integrator for large time steps", made convex as in Eyre 1998). So it has one
-// solution at every stiffness, and the total energy grows in a step by at most ClothReport::slack,
-// up to rounding. The same settings give the same bits on the same machine.
+// 2015, "Optimization integrator for large time steps", made convex as in Eyre 1998). So a step has
+// one solution at every stiffness, and the total energy grows in a step by at most
+// ClothReport::slack, up to rounding. The same settings give the same bits on the same machine.
+// docs/cloth.md has the equations and the proof of the energy bound, with the same names as here.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
-#include <array>
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/scene/scene.h"
 
 namespace farcull {
 
-// The numbers that describe a cloth and its simulation.
-
-/// All numbers are finite and in SI units.
+/// The numbers that describe a cloth and its simulation. All are finite and in SI units.
 struct ClothSettings {
-  std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000; rounded to 2 m^2 for a whole m
-  double stiffness = 1e4;           // of the spring along an edge, N/m; > 0
-  double side = 1;                  // of the square at rest, m; > 0
+  std::uint64_t triangles = 20000;  // 8 to 200,000; the cloth has 2 m^2, for a whole number m
+  double stiffness = 1e4;           // stiffness of the spring along an edge, N/m; > 0
+  double side = 1;                  // side of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
-  double buckling_load = 1;         // an edge of length l buckles at a thrust of this times l,
-                                    // N/m; >= 0
+  double buckling_load = 1;         // N/m; >= 0: an edge of length l buckles at a thrust of this
+                                    // times l
   double bending_rigidity = 2e-5;   // N m; >= 0
-  double gravity = 9.81;            // along -z, m/s^2; >= 0
-  double drag = 0.1;                // of the air, per area and speed, N s/m^3; >= 0
-  double radius = 0.15;             // of the sphere about the origin, m; 0: there is no contact,
-                                    // and the object "sphere" has no triangles
-  double contact_modulus = 1e6;     // pressure per depth below the sphere's surface, N/m^3; > 0
-  double friction = 0.3;            // Coulomb's coefficient between cloth and sphere; >= 0
-  double stick_speed = 0.01;        // below it friction falls linearly to 0, m/s; > 0
-  double height = 0.02;             // of the cloth above the sphere at the start, m; >= 0
-  double time_step = 0.01;          // s; > 0
-  double tolerance = 1e-3;          // largest residual, as a fraction of the weight of the heaviest
-                                    // vertex (at 9.81 m/s^2); > 0
-  int max_iterations = 400;         // factorizations in a step, at most; >= 0
-  std::uint64_t seed = 1;           // of the random heights that break the symmetry at the start
+  double gravity = 9.81;            // acceleration along -z, m/s^2; >= 0
+  double drag = 0.1;                // force of the air per area and speed, N s/m^3; >= 0
+  double radius = 0.15;  // radius of the sphere about the origin, m; 0: there is no contact,
+                         // and the object "sphere" has no triangles
+  double contact_modulus = 1e6;  // pressure per depth below the sphere's surface, N/m^3; > 0
+  double friction = 0.3;         // Coulomb's coefficient between cloth and sphere; >= 0
+  double stick_speed = 0.01;     // below it friction falls linearly to 0, m/s; > 0
+  double height = 0.02;          // height of the cloth above the sphere at the start, m; >= 0
+  double time_step = 0.01;       // s; > 0
+  double tolerance = 1e-3;       // largest residual, as a fraction of the weight of the heaviest
+                                 // vertex (at 9.81 m/s^2); > 0
+  int max_iterations = 400;      // factorizations in a step, at most; >= 0
+  std::uint64_t seed = 1;        // seed of the random heights that break the symmetry at the start
 };
 
-}  // namespace farcull
-
-// Minimizes the function of a time step.
-namespace farcull::cloth {
-
 // The cloth as springs, hinges and masses, and the convex function whose minimum is a time step.
-// docs/cloth.md has the equations and the proof of the energy bound, with the same names as here.
-//
 // Positions, velocities and forces are vectors of 3 numbers per vertex: x0 y0 z0 x1 y1 z1 ...
+namespace cloth {
 
 inline constexpr double kStandardGravity = 9.81;  // m/s^2, for weights as units of force
 
 /// A spring along an edge. At length l its force is stiffness * (l - length), but not less than
-/// -buckling_load * l: a shorter spring buckles. smooth_force() rounds this corner off.
+/// -buckling_load * l, since a shorter spring buckles. smooth_force() is a smooth form of this
+/// force.
 struct Spring {
   std::array<std::uint32_t, 2> vertices;
-  double length = 0;  // at rest, m
+  double length = 0;  // length at rest, m
 };
 
-/// A spring of rest length 0 across an edge, between a point of the edge and a point of the segment
-/// between the opposite corners; at rest these points coincide. w, the vector between them, is the
-/// sum of weight * vertex; the weights sum to 0. Energy: stiffness / 2 * |w|^2.
+/// A spring of rest length 0 across an edge. It connects a point of the edge with a point of the
+/// segment between the opposite corners; at rest these points coincide. The vector between them is
+/// w = the sum of weight * vertex, where the weights sum to 0. The energy is stiffness / 2 * |w|^2.
 struct Hinge {
   std::array<std::uint32_t, 4> vertices;
   std::array<double, 4> weights;
@@ -77,11 +67,11 @@ struct Hinge {
 
 struct Model {
   ClothSettings settings;
-  std::uint32_t cells = 0;  // along a side; `m` in comments
+  std::uint32_t cells = 0;  // cells along a side
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<double> area;  // per vertex, m^2: a third of its triangles
-  std::vector<double> mass;  // per vertex, kg
-  double crimp = 0;          // of smooth_force(), for all springs and contacts, J
+  std::vector<double> area;  // of each vertex, m^2: a third of its triangles
+  std::vector<double> mass;  // of each vertex, kg
+  double crimp = 0;          // J, of smooth_force() for all springs and contacts
   std::vector<Spring> springs;
   std::vector<Hinge> hinges;
   Eigen::VectorXd rest;  // the initial positions, m
@@ -90,14 +80,17 @@ struct Model {
 /// Throws Error naming "cloth" if a setting is out of range.
 Model make_model(const ClothSettings& settings);
 
+/// In J.
 struct Energies {
   double kinetic = 0;
-  double elastic = 0;
+  double elastic = 0;  // energy of stretched and compressed springs
   double bending = 0;
-  double gravitational = 0;
-  double contact = 0;
+  double gravitational = 0;  // 0 at the height of the sphere's centre
+  double contact = 0;        // energy of the sphere's surface; like `elastic`, slightly below 0 if
+                             // everything is slack (docs/cloth.md, crimp)
+
+  double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
-/// The energies of a state, J. Contact is with the sphere itself, not with its planes as in a step.
 Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity);
 
 /// One step from x0 with velocity v0: minimize
@@ -113,8 +106,8 @@ struct Step {
   const Model& model;
   Eigen::VectorXd x0;
   Eigen::VectorXd v0;
-  std::vector<Vec3> normal;      // per vertex; all 0 if there is no sphere
-  std::vector<double> friction;  // per vertex: mu N, newtons
+  std::vector<Vec3> normal;      // n of each vertex; 0 if there is no sphere
+  std::vector<double> friction;  // mu N of each vertex, newtons
   double stretch = 0;            // k + T, N/m
 };
 /// Precondition: sizes are those of the model. The model must outlive the step.
@@ -123,8 +116,8 @@ Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::Vecto
 /// The gradient of this function at x, N. Resizes `result`.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
-/// The force (N) of a spring of stiffness c that is stretched by e, with a smooth start: the f > 0
-/// with f (f/c - e) = crimp. Nearly c e if e is far above 0, nearly crimp/-e if e is far below 0.
+/// The force (N) of a spring of stiffness c that is stretched by e: the f > 0 with f (f/c - e) =
+/// crimp. It is nearly c e if e is far above 0, and nearly 0 if e is far below 0.
 double smooth_force(double c, double crimp, double e);
 /// The derivative of smooth_force() by e, and the energy whose derivative smooth_force() is.
 double smooth_stiffness(double c, double crimp, double e);
@@ -135,17 +128,17 @@ double slack_length(const Model& model, std::size_t spring);
 /// Stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
-/// The gradient without the terms in S (springs, contact), but with thrust (T d0.d) and friction.
+/// The gradient without the terms in S, those of springs and contact; with thrust and friction.
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
-/// The blocks that do not depend on x: inertia, air and bending. A pair may come several times, in
-/// either order. The block of a vertex with itself is given in full, not only its lower half.
+/// Calls add() with the blocks that do not depend on x: inertia, air and bending. A pair may come
+/// several times, in either order. The block of a vertex with itself is given in full.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// The second derivatives of one spring's energy by the position of either end; the mixed ones are
-/// the negative of this block. Positive semidefinite.
+/// The second derivatives of a spring's energy by the position of either end. The derivatives by
+/// both ends are the negative of this block. Positive semidefinite.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
 /// Contributions of contact and of friction to the block of a vertex. Positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
@@ -156,73 +149,16 @@ struct ConePoint {
   double t = 0;
   Vec3 d = Vec3::Zero();
 };
-/// t^2 - |d|^2.
 double determinant(const ConePoint& u);
 /// The largest a with u + a du in the cone; infinite if there is none. Precondition: u is inside.
 double reach(const ConePoint& u, const ConePoint& du);
 
-class Interior {
- public:
-  /// Starts inside the cones, from the positions x. `complementarity`: the initial product of each
-  /// spring's u and its dual z, and of each contact's s and f, J. The step must outlive this
-  /// object.
-  Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
-
-  /// Mean of the complementarities, J.
-  double complementarity() const;
-
-  /// Sets up the equations of the next direction, which aims at complementarity `target`. Then the
-  /// functions below give the blocks and forces that springs and contacts, whose own unknowns are
-  /// eliminated, add to the equations of the positions.
-  void linearize(const Eigen::VectorXd& x, double target);
-  const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
-  const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
-  Block contact_block(std::size_t vertex) const;
-  Vec3 contact_force(std::size_t vertex) const;
-
-  /// Moves the positions and all other unknowns along the direction, as far as the cones allow.
-  /// Returns the fraction that it moved, at most 1. Precondition: linearize() was called at x.
-  double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
-
- private:
-  struct SpringState {
-    double length = 0;  // l*
-    ConePoint u;
-    ConePoint z;
-    ConePoint du;
-    ConePoint dz;
-    double across = 0;  // scaling of t with t, plus stiffness
-    double right = 0;   // right hand side of the equation of t
-    Vec3 mixed;         // scaling of t with d
-    Block whole;        // scaling of d with d
-    Block block;        // added to the matrix; t is eliminated
-    Vec3 force;         // added to the force
-  };
-  struct ContactState {
-    double stiffness = 0;
-    double s = 0;
-    double f = 0;
-    double ds = 0;
-    double df = 0;
-    double scaling = 0;  // f/s
-    double block = 0;
-    double force = 0;
-    double right = 0;
-    bool is_there = false;
-  };
-
-  const Step& step_;
-  double target_ = 0;
-  std::vector<SpringState> springs_;
-  std::vector<ContactState> contacts_;  // per vertex
-};
-
 struct Minimum {
   Eigen::VectorXd x;
-  Eigen::VectorXd gradient;  // of the step's function at x, N
+  Eigen::VectorXd gradient;  // gradient of the step's function at x, N
   double residual = 0;       // largest force on a vertex, N; infinite if a force is not finite
   int iterations = 0;        // factorizations
-  bool converged = false;    // residual <= tolerance(x)
+  bool converged = false;    // residual <= Solver::tolerance(x)
   std::string reason = {};   // why it did not converge
 };
 
@@ -243,44 +179,34 @@ class Solver {
   const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
 
  private:
-  using Slot = std::array<int, 3>;  // per column of a block: where its first value is stored
+  using Slot = std::array<int, 3>;  // for each column of a block, the place of its first value
   Slot slot(std::uint32_t a, std::uint32_t b) const;
   void assemble(const std::function<Block(std::size_t)>& of_spring,
                 const std::function<Block(std::uint32_t)>& of_vertex);
   bool solve(const Eigen::VectorXd& right, Eigen::VectorXd& result);
-  bool newton(const Step& step, int iterations, int creeps, Minimum& best);
+  bool newton(const Step& step, int iterations, int most_short, Minimum& best);
   void interior(const Step& step, Minimum& best);
 
   const Model& model_;
   Eigen::SparseMatrix<double> matrix_;
-  std::vector<double> constant_;    // the part of the values that x does not change
-  std::vector<Slot> vertex_slots_;  // per vertex
-  std::vector<Slot> spring_slots_;  // per spring: of the block of its two ends
+  std::vector<double> constant_;    // the values of matrix_ without the blocks that depend on x
+  std::vector<Slot> vertex_slots_;  // for each vertex, the places of its block with itself
+  std::vector<Slot> spring_slots_;  // for each spring, the places of the block of its ends
   bool was_stiff_ = false;          // the last step needed interior points
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;  // of matrix_
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;  // the Cholesky factor of matrix_
 };
 
-}  // namespace farcull::cloth
+}  // namespace cloth
 
-namespace farcull {
-
-/// The outcome of a step, and the energies (J) after it.
-struct ClothReport {
-  long frame = 0;  // number of steps so far, this one included; 0: before the first
-  double kinetic = 0;
-  double elastic = 0;  // of the springs, stretched or compressed
-  double bending = 0;
-  double gravitational = 0;  // 0 at the centre of the sphere
-  double contact = 0;        // of the sphere's surface; like `elastic`, slightly below 0
-                             // if everything is slack (docs/cloth.md, crimp)
+/// The outcome of a step, and the energies after it.
+struct ClothReport : cloth::Energies {
+  long frame = 0;            // number of steps so far, this one included; 0: before the first
   double residual = 0;       // largest force on a vertex that the step left unbalanced, N
   double slack = 0;          // work of the unbalanced forces in the step, J: the most that the
                              // total energy may have gained
   int iterations = 0;        // factorizations
   bool converged = true;     // residual <= its tolerance
   std::string warning = {};  // why it did not converge, and what was kept instead; else empty
-
-  double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
 
 /// The state between two steps, and the report of the last one.
@@ -310,9 +236,9 @@ class Cloth {
   const ClothReport& report() const;
 
   ClothState state() const;
-  /// Takes the state and recomputes the energies of its report. Velocities that are not finite make
-  /// the next step fail as described for step(). Throws std::logic_error if there are not three
-  /// positions and velocities for each vertex.
+  /// Takes the state, and recomputes the energies of its report. If velocities are not finite, the
+  /// next step does not converge. Throws std::logic_error if there are not three positions and
+  /// velocities for each vertex.
   void restore(const ClothState& state);
 
  private:

@@ -7,16 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
-#include "core/base/error.h"
 #include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::cloth {
 namespace {
 
-// Model::crimp, over the weight of a cell times the side of the cell. With this value an edge that
-// is slack by 1e-4 of its length pulls with 1e-4 of the weight.
+// Model::crimp divided by the weight of a cell and the side of the cell. An edge that is slack by
+// 1e-4 of its length then pulls with 1e-4 of the cell's weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {
@@ -61,7 +59,7 @@ void add_triangles(Model& model) {
       const std::uint32_t b = id(i + 1, j);
       const std::uint32_t c = id(i + 1, j + 1);
       const std::uint32_t d = id(i, j + 1);
-      // Diagonals alternate, so that the weave is equally stiff in mirrored directions.
+      // Diagonals alternate, so that the cloth is equally stiff in mirrored directions.
       if ((i + j) % 2 == 0) {
         model.triangles.insert(model.triangles.end(), {{a, b, c}, {a, c, d}});
       } else {
@@ -71,8 +69,9 @@ void add_triangles(Model& model) {
   }
 }
 
-// Places the cloth flat above the sphere, a little off its centre. Random heights far below the
-// size of a cell decide where the cloth folds; without them rounding would decide.
+// Places the cloth flat above the sphere, a little off its centre. The heights are random, far
+// below the size of a cell: they decide where the cloth folds, which rounding would decide
+// otherwise.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -90,20 +89,20 @@ void place(Model& model) {
 }
 
 // Adds the hinge of edge a-b; c and d are the opposite corners of its two triangles. The weights
-// give the point where the line through c and d meets the edge: the middle of an edge that is a
-// diagonal of a cell, one end of any other edge.
+// give the point where the line through c and d meets the edge: the middle of a diagonal of a cell,
+// one end of any other edge, where the triangles mirror each other.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // A hinge has the energy stiffness / 2 * |w|^2. Edges along the grid: one per cell and direction.
-  // At curvature kappa across them |w| = kappa cell^2 / 2, and a plate has the energy rigidity
-  // kappa^2 / 2 per area, so rigidity = stiffness cell^2 / 4. Diagonals: one per cell. A twist
-  // kappa gives its hinge the same |w|, but a plate twice the energy, so the stiffness is doubled.
+  // The stiffness that gives the cloth the bending energy of a plate, rigidity / 2 kappa^2 per area
+  // at curvature kappa. There is one edge along the grid per cell and direction. Its hinge has |w|
+  // = kappa cell^2 / 2 and the energy stiffness / 2 |w|^2, so stiffness = 4 rigidity / cell^2.
+  // There is one diagonal per cell. At a twist kappa its hinge has the same |w|, but the plate has
+  // twice the energy, so the stiffness of a diagonal is doubled.
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
   if (!diagonal) {
-    // The two triangles mirror each other, so the line through c and d meets the edge at one end.
     const bool at_a = a % side == c % side || a / side == c / side;
     hinge = {{a, b, c, d}, {at_a ? -1.0 : 0.0, at_a ? 0.0 : -1.0, 0.5, 0.5}, stiffness};
   }
@@ -111,7 +110,7 @@ void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, 
 }
 
 void add_springs_and_hinges(Model& model) {
-  // Per edge: the opposite corner in the first triangle of the edge.
+  // For each edge, the corner opposite to it in its first triangle.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
   const std::uint32_t side = model.cells + 1;
   const double cell = model.settings.side / model.cells;
@@ -130,7 +129,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Energy of the convex spring, minus that of the thrust, T l^2/2; 0 at rest.
+// The energy of the convex spring minus the energy of the thrust, T l^2 / 2. It is 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;

@@ -1,21 +1,17 @@
-// Assembles the Hessian into a fixed pattern, and minimizes by Newton's method with a line search,
-// or by interior points: Nesterov and Todd's scaling of each cone, and steps that stay inside.
+// The solver minimizes the function of a step, by Newton's method with a line search, or by
+// interior points: Nesterov and Todd's scaling of each cone, and moves that stay inside. A Cloth
+// makes one step after the other.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "experiments/scenes/cloth/cloth.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::cloth {
-
-namespace {
-
-constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
-constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
-
-}  // namespace
 
 double determinant(const ConePoint& u) {
   const double n = u.d.norm();
@@ -23,8 +19,8 @@ double determinant(const ConePoint& u) {
 }
 
 double reach(const ConePoint& u, const ConePoint& du) {
-  // The least a > 0 at which t or the determinant of u + a du is 0. The determinant is
-  // c + 2 b a + q a^2 with c > 0.
+  // The least a > 0 at which t, or the determinant of u + a du, is 0. This determinant is c + 2 b a
+  // + q a^2 with c > 0.
   const double q = determinant(du);
   const double b = u.t * du.t - u.d.dot(du.d);
   const double c = determinant(u);
@@ -40,8 +36,72 @@ double reach(const ConePoint& u, const ConePoint& du) {
   return first;
 }
 
+namespace {
+
+constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
+constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
+
+// The unknowns of the interior points: for each spring a point u of the cone and its dual z, and
+// for each contact a distance s and a force f. The complementarity of a spring is u.z, that of a
+// contact is s f, J; both are about Model::crimp at the minimum.
+class Interior {
+ public:
+  // Starts inside the cones at the positions x, where each complementarity has the given value. The
+  // step must outlive this object.
+  Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
+
+  // The mean of the complementarities, J.
+  double complementarity() const;
+
+  // Sets up the equations of the next direction, which aims at complementarity `target`. Then the
+  // next four functions give the blocks and forces that springs and contacts add to the equations
+  // of the positions; the unknowns of springs and contacts are eliminated.
+  void linearize(const Eigen::VectorXd& x, double target);
+  const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
+  const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
+  Block contact_block(std::size_t vertex) const {
+    if (contacts_.empty()) return Block::Zero();
+    const Vec3& n = step_.normal[vertex];
+    return contacts_[vertex].block * n * n.transpose();
+  }
+  Vec3 contact_force(std::size_t vertex) const {
+    if (contacts_.empty()) return Vec3::Zero();
+    return contacts_[vertex].force * step_.normal[vertex];
+  }
+
+  // Moves the positions and all other unknowns along the direction, as far as the cones allow.
+  // Returns the fraction that it moved, at most 1. Precondition: linearize() was called at x.
+  double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
+
+ private:
+  struct SpringState {
+    double length = 0;  // l*
+    ConePoint u, z, du, dz;
+    double across = 0;  // scaling of t with t, plus stiffness
+    double right = 0;   // right-hand side of the equation of t
+    Vec3 mixed;         // scaling of t with d
+    Block whole;        // scaling of d with d
+    Block block;        // added to the matrix; t is eliminated
+    Vec3 force;         // added to the force
+  };
+  struct ContactState {
+    double stiffness = 0;
+    double s = 0, f = 0, ds = 0, df = 0;
+    double scaling = 0;  // f / s
+    double right = 0;    // right-hand side of the equation of s
+    double block = 0, force = 0;
+  };
+
+  const Step& step_;
+  double target_ = 0;
+  std::vector<SpringState> springs_;
+  std::vector<ContactState> contacts_;  // one for each vertex; none without a sphere
+};
+
 Interior::Interior(const Step& step, const Eigen::VectorXd& x, double complementarity)
-    : step_(step), springs_(step.model.springs.size()), contacts_(step.model.mass.size()) {
+    : step_(step),
+      springs_(step.model.springs.size()),
+      contacts_(step.model.settings.radius > 0 ? step.model.mass.size() : 0) {
   const Model& model = step.model;
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     SpringState& spring = springs_[i];
@@ -54,8 +114,6 @@ Interior::Interior(const Step& step, const Eigen::VectorXd& x, double complement
   }
   for (std::size_t v = 0; v < contacts_.size(); ++v) {
     ContactState& contact = contacts_[v];
-    contact.is_there = !step.normal[v].isZero(0);
-    if (!contact.is_there) continue;
     contact.stiffness = contact_stiffness(model, v);
     const double away = step.normal[v].dot(x.segment<3>(3 * v)) - model.settings.radius;
     contact.s = std::max(away, kWidth * model.springs[0].length);
@@ -65,17 +123,10 @@ Interior::Interior(const Step& step, const Eigen::VectorXd& x, double complement
 
 double Interior::complementarity() const {
   double sum = 0;
-  double count = 0;
-  for (const SpringState& spring : springs_) {
+  for (const SpringState& spring : springs_)
     sum += spring.u.t * spring.z.t + spring.u.d.dot(spring.z.d);
-    ++count;
-  }
-  for (const ContactState& contact : contacts_) {
-    if (!contact.is_there) continue;
-    sum += contact.s * contact.f;
-    ++count;
-  }
-  return sum / count;
+  for (const ContactState& contact : contacts_) sum += contact.s * contact.f;
+  return sum / static_cast<double>(springs_.size() + contacts_.size());
 }
 
 void Interior::linearize(const Eigen::VectorXd& x, double target) {
@@ -83,8 +134,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
   for (SpringState& spring : springs_) {
     const ConePoint& u = spring.u;
     const ConePoint& z = spring.z;
-    // The scaling W^-2, which takes u to z: eta (2 w w' - J) with w = J (u/|u| + J z/|z|)/(2 g),
-    // J = diag(1, -1, -1, -1), |u| the root of the determinant.
+    // The scaling W^-2 = eta (2 w w' - J), which takes u to z. Here w = J (u/|u| + J z/|z|)/(2 g),
+    // J = diag(1, -1, -1, -1), and |u| is the root of the determinant.
     const double size_u = std::sqrt(determinant(u));
     const double size_z = std::sqrt(determinant(z));
     const double cosine = (u.t * z.t + u.d.dot(z.d)) / (size_u * size_z);
@@ -96,7 +147,7 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.mixed = eta * 2 * wt * wd;
     spring.whole = eta * (2 * wd * wd.transpose() + Block::Identity());
     spring.across = step_.stretch + tt;
-    // dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c) give du_t.
+    // The equations dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c) give du_t.
     const double inverse = target / (size_u * size_u);
     spring.right =
         inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
@@ -105,27 +156,15 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
   }
   for (std::size_t v = 0; v < contacts_.size(); ++v) {
     ContactState& contact = contacts_[v];
-    if (!contact.is_there) continue;
     const double away = step_.normal[v].dot(x.segment<3>(3 * v)) - step_.model.settings.radius;
     contact.scaling = contact.f / contact.s;
-    // The equation s = f/c + away is treated like that of the springs, in one dimension.
+    // The equation s = f/c + away is solved like the equation of a spring, in one dimension.
     const double off = contact.s - contact.f / contact.stiffness - away;
     contact.right = (target / contact.s - contact.f) / contact.stiffness - off;
     const double divisor = 1 + contact.scaling / contact.stiffness;
     contact.block = contact.scaling / divisor;
     contact.force = -target / contact.s + contact.scaling * contact.right / divisor;
   }
-}
-
-Block Interior::contact_block(std::size_t vertex) const {
-  if (!contacts_[vertex].is_there) return Block::Zero();
-  const Vec3& n = step_.normal[vertex];
-  return contacts_[vertex].block * n * n.transpose();
-}
-
-Vec3 Interior::contact_force(std::size_t vertex) const {
-  if (!contacts_[vertex].is_there) return Vec3::Zero();
-  return contacts_[vertex].force * step_.normal[vertex];
 }
 
 double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
@@ -145,7 +184,6 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
   }
   for (std::size_t v = 0; v < contacts_.size(); ++v) {
     ContactState& contact = contacts_[v];
-    if (!contact.is_there) continue;
     const double out = step_.normal[v].dot(direction.segment<3>(3 * v));
     contact.ds = (contact.right + out) / (1 + contact.scaling / contact.stiffness);
     contact.df = target_ / contact.s - contact.f - contact.scaling * contact.ds;
@@ -169,17 +207,15 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
   return way;
 }
 
-namespace {
-
 constexpr int kTrials = 60;  // lengths tried in one direction; a double allows no more halvings
 // The constants below change the time of a step, not its result.
-constexpr int kPatience = 40;      // Newton's iterations before interior points take over
-constexpr double kCreeps = 0.125;  // a step below this fraction of Newton's counts as short
-constexpr int kCreepsAtMost = 3;   // short steps until interior points take over; 1 if was_stiff_
-constexpr double kStart = 1;       // initial complementarity / (weight * length)
-constexpr double kEnd = 2;         // final complementarity / crimp; from there Newton's is quick
+constexpr int kMostIterations = 40;  // Newton's iterations before interior points take over
+constexpr double kShort = 0.125;     // a step below this fraction of Newton's counts as short
+constexpr int kMostShort = 3;        // short steps before interior points take over
+constexpr double kStart = 1;         // initial complementarity / (weight * length)
+constexpr double kEnd = 2;           // final complementarity / crimp: Newton's method is then quick
 
-// The lower triangle of the matrix, with the values that do not depend on x.
+// The lower triangle of the matrix, filled with the values that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
@@ -228,7 +264,7 @@ Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
   for (int c = 0; c < 3; ++c) {
     const int* const first = rows + matrix_.outerIndexPtr()[column + c];
     const int* const end = rows + matrix_.outerIndexPtr()[column + c + 1];
-    // On the diagonal a column of the lower triangle begins with its own row.
+    // In a block on the diagonal, column c of the lower triangle begins with row c.
     result[c] = static_cast<int>(std::lower_bound(first, end, std::max(row, column + c)) - rows);
   }
   return result;
@@ -265,8 +301,8 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
 double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  // A coordinate of either end of a spring is stored with an error of up to u |x|. It changes the
-  // spring's force by (k + T) times the error. A vertex has at most 8 springs, and 3 coordinates.
+  // A stored coordinate errs by up to 2^-53 |x|. An error of either end of a spring changes its
+  // force by k + T times the error. A vertex has at most 8 springs and 3 coordinates.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;
@@ -281,10 +317,10 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
 }
 
 // Each iteration searches along Newton's direction until |slope| is at most a tenth of its initial
-// value. The function is convex, so the slope begins below 0 and never falls, and the value falls.
-// Stops after `iterations` iterations or `creeps` short steps. Returns false if a force is not
-// finite, the matrix has no Cholesky factor, or the setting max_iterations is used up.
-bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best) {
+// value. The function is convex, so the slope begins below 0 and rises. Stops after `iterations`
+// iterations or `most_short` short steps. Returns false if a force is not finite, the matrix has no
+// Cholesky factor, or the setting max_iterations is used up.
+bool Solver::newton(const Step& step, int iterations, int most_short, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());
   gradient(step, best.x, best.gradient);
@@ -301,7 +337,7 @@ bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best)
                                 best.iterations, best.residual, tolerance(best.x));
       return false;
     }
-    if (i == iterations || creeps == 0) return true;
+    if (i == iterations || most_short == 0) return true;
     ++best.iterations;
     hessian(step, best.x);
     if (!solve(-best.gradient, p)) {
@@ -330,18 +366,18 @@ bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best)
       length = std::clamp(secant, lo + margin, hi - margin);
     }
     best.x = x;
-    if (length < kCreeps) --creeps;
+    if (length < kShort) --most_short;
   }
 }
 
-// Moves best.x close to the minimum; on failure best.x is unchanged.
+// Moves best.x close to the minimum. If that fails, best.x is unchanged.
 void Solver::interior(const Step& step, Minimum& best) {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   Eigen::VectorXd x = best.x;
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // next complementarity / this one; smaller after a longer step
+  double aim = 0.1;  // wanted ratio of the next complementarity to this one
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;
@@ -370,7 +406,7 @@ void Solver::interior(const Step& step, Minimum& best) {
 Minimum Solver::minimize(const Step& step) {
   Minimum best;
   best.x = step.x0;
-  if (!newton(step, kPatience, was_stiff_ ? 1 : kCreepsAtMost, best) || best.converged) {
+  if (!newton(step, kMostIterations, was_stiff_ ? 1 : kMostShort, best) || best.converged) {
     was_stiff_ = false;
     return best;
   }
@@ -382,3 +418,105 @@ Minimum Solver::minimize(const Step& step) {
 }
 
 }  // namespace farcull::cloth
+
+namespace farcull {
+namespace {
+
+// The level of the finest shapes::sphere() that has at most half as many triangles.
+int sphere_level(std::uint64_t triangles) {
+  int level = 0;
+  while (20 * (std::uint64_t{4} << (2 * level)) <= triangles / 2) ++level;
+  return level;
+}
+
+Scene make_scene(const cloth::Model& model) {
+  std::vector<Vec3> rest;
+  for (Eigen::Index v = 0; v < model.rest.size(); v += 3)
+    rest.emplace_back(model.rest.segment<3>(v));
+  const Mesh square = shapes::finished(std::move(rest), model.triangles);
+  Mesh ball;
+  if (model.settings.radius > 0) ball = shapes::sphere(sphere_level(model.triangles.size()));
+  for (Vec3& p : ball.vertices) p *= model.settings.radius;
+  Scene scene;
+  scene.name = "cloth";
+  append_object("cloth", square.vertices, square.triangles, square.source_face, scene);
+  append_object("sphere", ball.vertices, ball.triangles, ball.source_face, scene);
+  scene.objects[0].self = true;
+  validate(scene, "cloth");
+  return scene;
+}
+
+}  // namespace
+
+struct Cloth::State {
+  explicit State(const ClothSettings& settings)
+      : model(cloth::make_model(settings)),
+        solver(model),
+        x(model.rest),
+        velocity(Eigen::VectorXd::Zero(model.rest.size())),
+        scene(make_scene(model)) {}
+
+  void move_to(Eigen::VectorXd positions) {
+    x = std::move(positions);
+    for (Eigen::Index v = 0; v < x.size(); v += 3) scene.vertices[v / 3] = x.segment<3>(v);
+  }
+
+  void measure() { static_cast<cloth::Energies&>(report) = cloth::energies(model, x, velocity); }
+
+  const cloth::Model model;
+  cloth::Solver solver;
+  Eigen::VectorXd x;
+  Eigen::VectorXd velocity;
+  Scene scene;
+  ClothReport report;
+};
+
+Cloth::Cloth(const ClothSettings& settings) : state_(std::make_unique<State>(settings)) {
+  state_->measure();
+}
+Cloth::~Cloth() = default;
+Cloth::Cloth(Cloth&&) noexcept = default;
+Cloth& Cloth::operator=(Cloth&&) noexcept = default;
+
+const Scene& Cloth::scene() const { return state_->scene; }
+const ClothReport& Cloth::report() const { return state_->report; }
+
+ClothState Cloth::state() const {
+  return {.report = state_->report, .positions = state_->x, .velocities = state_->velocity};
+}
+
+void Cloth::restore(const ClothState& state) {
+  State& s = *state_;
+  if (state.positions.size() != s.x.size() || state.velocities.size() != s.x.size())
+    throw std::logic_error("Cloth::restore: not three numbers for each vertex");
+  s.move_to(state.positions);
+  s.velocity = state.velocities;
+  s.report = state.report;
+  s.measure();
+}
+
+ClothReport Cloth::step() {
+  State& s = *state_;
+  const cloth::Step step = cloth::make_step(s.model, s.x, s.velocity);
+  cloth::Minimum minimum = s.solver.minimize(step);
+  ClothReport report;
+  report.frame = s.report.frame + 1;
+  report.residual = minimum.residual;
+  report.iterations = minimum.iterations;
+  report.converged = minimum.converged && minimum.x.allFinite();
+  if (report.converged) {
+    const Eigen::VectorXd moved = minimum.x - s.x;
+    report.slack = minimum.gradient.dot(moved);
+    s.velocity = moved / s.model.settings.time_step;
+    s.move_to(std::move(minimum.x));
+  } else {
+    s.velocity.setZero();
+    report.warning = "the solver did not converge: " + minimum.reason +
+                     "; the cloth stays where it was, at rest";
+  }
+  s.report = std::move(report);
+  s.measure();
+  return s.report;
+}
+
+}  // namespace farcull

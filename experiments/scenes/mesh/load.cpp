@@ -1,32 +1,27 @@
 // Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
-// meshes by their real paths. Compressed contents are decompressed first. Knows the extensions of
-// formats that are not read, to name a converter.
+// meshes by their real paths. Compressed contents are decompressed first.
 #include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
-
 namespace {
 
-// Formats that are not read, by their extensions, and what converts them.
+// Formats that are not read, and the advice to their users.
 struct Foreign {
-  const char* by;
+  const char* remedy;
   std::string_view extensions;
 };
 constexpr std::array<Foreign, 7> kForeign = {{
@@ -44,32 +39,19 @@ constexpr std::array<Foreign, 7> kForeign = {{
      ".jt .dxf .dwg .skp "},
 }};
 
-}  // namespace
+bool is_compressed(const std::string& path) {
+  return lower_case(std::filesystem::path(path).extension().string()) == ".gz";
+}
 
-std::string lower_extension(const std::string& path) {
+// The name of the file without its folder and without .gz.
+std::filesystem::path plain_name(const std::string& path) {
   const std::filesystem::path name(path);
-  const std::string last = lower_case(name.extension().string());
-  return last == ".gz" ? lower_case(name.stem().extension().string()) + last : last;
+  return is_compressed(path) ? name.stem() : name.filename();
 }
 
-std::string mesh_stem(const std::string& path) {
-  const std::filesystem::path name(path);
-  return lower_case(name.extension().string()) == ".gz" ? name.stem().stem().string()
-                                                        : name.stem().string();
+std::string extension_of(const std::string& path) {
+  return lower_case(plain_name(path).extension().string());
 }
-
-std::optional<Error> foreign_mesh(const std::string& path) {
-  std::string extension = lower_extension(path);
-  if (extension.ends_with(".gz")) extension.resize(extension.size() - 3);
-  for (const Foreign& format : kForeign) {
-    if (extension.empty() || format.extensions.find(" " + extension + " ") == std::string::npos)
-      continue;
-    return Error(path, "is a " + extension + " file; OBJ, OFF, PLY and STL are read", format.by);
-  }
-  return std::nullopt;
-}
-
-namespace {
 
 // Larger files are refused. A file is read as a whole, so that the counts in it can be compared
 // with its length.
@@ -77,20 +59,16 @@ constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 struct Reader {
   std::string_view extension;
-  MeshFormat format;
   Mesh (*parse)(std::string_view bytes, const std::string& name);
 };
 // In the order of MeshFormat.
-constexpr std::array<Reader, 4> kReaders = {{{".obj", MeshFormat::kObj, parse_obj},
-                                             {".off", MeshFormat::kOff, parse_off},
-                                             {".ply", MeshFormat::kPly, parse_ply},
-                                             {".stl", MeshFormat::kStl, parse_stl}}};
+constexpr std::array<Reader, 4> kReaders = {
+    {{".obj", parse_obj}, {".off", parse_off}, {".ply", parse_ply}, {".stl", parse_stl}}};
 
-std::optional<MeshFormat> find_format(const std::string& path) {
-  std::string extension = lower_extension(path);
-  if (extension.ends_with(".gz")) extension.resize(extension.size() - 3);
+std::optional<MeshFormat> find_format(const std::string& extension) {
   const auto found = std::ranges::find(kReaders, extension, &Reader::extension);
-  return found == kReaders.end() ? std::nullopt : std::optional(found->format);
+  if (found == kReaders.end()) return std::nullopt;
+  return static_cast<MeshFormat>(found - kReaders.begin());
 }
 
 Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& name) {
@@ -98,15 +76,14 @@ Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& n
   return kReaders.at(static_cast<std::size_t>(format)).parse(bytes, name);
 }
 
-// ---- names of files with a place for a number
-
+// The place for a number in the name of a file: %d or %04d.
 struct Place {
-  std::size_t at = std::string::npos;  // of the %
+  std::size_t at = std::string::npos;  // position of the %
   std::size_t size = 0;
   int digits = 1;
 };
 
-// The first place for a number, and whether it is the only one.
+// The first place for a number in a name, and whether it is the only one.
 std::pair<Place, bool> place_in(const std::string& name) {
   Place found;
   int count = 0;
@@ -128,45 +105,13 @@ std::pair<Place, bool> place_in(const std::string& name) {
 }
 
 // The absolute path without links; `path` itself if there is no such file. Calls the C library,
-// since std::filesystem would hold several more paths at once.
+// since std::filesystem needs memory for several paths at once, and a path of a file may be long.
 std::string real_path(const std::string& path) {
-#ifdef _WIN32
-  char* const found = ::_fullpath(nullptr, path.c_str(), 0);
-#else
-  char* const found = ::realpath(path.c_str(), nullptr);
-#endif
-  const std::unique_ptr<char, void (*)(void*)> file(found, &std::free);
+  const std::unique_ptr<char, void (*)(void*)> file(::realpath(path.c_str(), nullptr), &std::free);
   return file ? file.get() : path;
 }
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
-
-}  // namespace
-
-MeshFormat named_format(const std::string& name) {
-  const auto found = std::ranges::find(kReaders, "." + name, &Reader::extension);
-  if (found != kReaders.end()) return found->format;
-  throw Error("--format", quote_token(name) + " is no format", "give obj, off, ply or stl");
-}
-
-MeshFormat mesh_format(const std::string& path) {
-  if (const std::optional<MeshFormat> format = find_format(path)) return *format;
-  if (const std::optional<Error> foreign = foreign_mesh(path)) throw *foreign;
-  const std::string extension = lower_extension(path);
-  if (extension == ".gz") {
-    throw Error(path, "a compressed mesh needs the extension of its format before .gz",
-                "name it as in bunny.obj.gz");
-  }
-  throw Error(path,
-              extension.empty()
-                  ? "a mesh file needs an extension that names its format"
-                  : "no mesh format is known by the extension " + quote_token(extension),
-              "give a file that ends in .obj, .off, .ply or .stl, or in one of these and .gz");
-}
-
-bool has_mesh_extension(const std::string& path) { return find_format(path).has_value(); }
-
-namespace {
 
 struct ReadingNotes {
   std::mutex mutex;
@@ -178,6 +123,43 @@ ReadingNotes& reading_notes() {
 }
 
 }  // namespace
+
+std::string mesh_stem(const std::string& path) { return plain_name(path).stem().string(); }
+
+std::optional<Error> foreign_mesh(const std::string& path) {
+  const std::string extension = extension_of(path);
+  for (const Foreign& format : kForeign) {
+    if (extension.empty() || format.extensions.find(" " + extension + " ") == std::string::npos)
+      continue;
+    return Error(path, "is a " + extension + " file; OBJ, OFF, PLY and STL are read",
+                 format.remedy);
+  }
+  return std::nullopt;
+}
+
+MeshFormat named_format(const std::string& name) {
+  if (const std::optional<MeshFormat> format = find_format("." + name)) return *format;
+  throw Error("--format", quote_token(name) + " is no format", "give obj, off, ply or stl");
+}
+
+MeshFormat mesh_format(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (const std::optional<MeshFormat> format = find_format(extension)) return *format;
+  if (const std::optional<Error> foreign = foreign_mesh(path)) throw *foreign;
+  if (is_compressed(path) && extension.empty()) {
+    throw Error(path, "a compressed mesh needs the extension of its format before .gz",
+                "name it as in bunny.obj.gz");
+  }
+  throw Error(path,
+              extension.empty() ? "a mesh file needs an extension that names its format"
+                                : "no mesh format is known by the extension " +
+                                      quote_token(extension + (is_compressed(path) ? ".gz" : "")),
+              "give a file that ends in .obj, .off, .ply or .stl, or in one of these and .gz");
+}
+
+bool has_mesh_extension(const std::string& path) {
+  return find_format(extension_of(path)).has_value();
+}
 
 void add_reading_notes(const std::string& path, const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 100;
@@ -198,7 +180,7 @@ Mesh load_mesh(const std::string& path) {
   const MeshFormat format = mesh_format(path);
   try {
     std::string bytes = read_file(path, kMaxMeshBytes);
-    if (lower_extension(path).ends_with(".gz") && !bytes.empty() && !is_gzip(bytes)) {
+    if (is_compressed(path) && !bytes.empty() && !is_gzip(bytes)) {
       throw Error(path, "is named .gz, but its contents are not compressed by gzip",
                   "rename it: without .gz it is read as what it holds");
     }
@@ -216,8 +198,6 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
   if (!compressed) return parse_known(bytes, format, name);
   return parse_known(gunzip(bytes, name, {.max_bytes = kMaxMeshBytes}), format, name);
 }
-
-// ---- the builder
 
 MeshBuilder::MeshBuilder(std::string name, std::uint32_t first)
     : name_(std::move(name)), first_(first) {}
@@ -297,8 +277,6 @@ Mesh MeshBuilder::finish() {
   }
   return std::move(mesh_);
 }
-
-// ---- the cache
 
 bool is_numbered(const std::string& name) { return place_in(name).second; }
 

@@ -3,29 +3,23 @@
 // OBJ: polygons, groups and objects. Materials, normals, texture coordinates, points and lines are
 // skipped; free-form surfaces are refused, since skipping them would lose geometry.
 //
-// OFF, as written by Geomview and its followers: a header, the counts (on the header's line or the
-// next one), then a line for each vertex and each face. A vertex line begins with the position, so
-// normals, colours and texture coordinates that the header declares (NOFF, COFF, STOFF and their
-// combinations) are skipped, and so is the colour at the end of a face line.
+// OFF, as Geomview writes it: a header, the counts, then a line for each vertex and each face.
+// Skips normals, colours and texture coordinates after the position of a vertex, if the header
+// declares them (NOFF, COFF, STOFF and their combinations), and colours at the end of a face line.
 //
-// STL, ASCII and binary. A binary file may begin with "solid" too, so its length decides first,
-// then its contents.
+// STL, ASCII and binary. A binary file may begin with "solid" too, so the length of the file is
+// checked before its contents.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <map>
-#include <string>
 #include <unordered_map>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/mesh/near_points.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -43,8 +37,8 @@ bool contains(std::span<const std::string_view> words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// The vertex of one corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, as a 0-based index; negative v count
-// from the last vertex.
+// The vertex of one corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, as an index from 0. A negative v
+// counts backwards from the last vertex.
 std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, const TextReader& in) {
   const std::string_view text = token.substr(0, token.find('/'));
   if (token.find_first_not_of("0123456789/-+") != std::string_view::npos || text.empty() ||
@@ -67,7 +61,7 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
-// Refuses bytes that look like another format. Only what is no OBJ anyway comes here.
+// Throws Error if the bytes look like another format. Precondition: they are no valid OBJ.
 void refuse_other_format(std::string_view bytes, const std::string& name) {
   const std::string start = lower_case(bytes.substr(0, 5));
   const bool stl = is_binary_stl(bytes) || start == "solid";
@@ -79,8 +73,8 @@ void refuse_other_format(std::string_view bytes, const std::string& name) {
                 "rename it by its format, or get it again");
 }
 
-// Refuses a lone CR if lines end with LF. It would be a blank, so that the text after it would be
-// in the same line and would be lost in a comment or after a vertex.
+// Refuses a lone CR if lines end with LF. The CR would be a blank, so that the text after it would
+// be lost if it follows a comment or a vertex.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -102,7 +96,7 @@ Mesh parse_obj(std::string_view bytes, const std::string& name) {
   TextReader in(bytes, name, {.comment = '#', .continuation = true});
   MeshBuilder mesh(name, 1);
   std::vector<std::uint32_t> corners;
-  std::string within;  // the number of the object
+  std::string within;  // the number of the current object, as text
   std::map<std::string, std::size_t, std::less<>> objects;
   std::string twice;  // the first object that begins a second time
   long line_of_twice = 0;
@@ -167,7 +161,7 @@ struct Header {
   bool extra_per_vertex = false;
 };
 
-// Whether keyword is [ST][C][N]OFF, the variants whose vertices are x y z and then other things.
+// True if the keyword is [ST][C][N]OFF: in these variants a vertex line begins with x, y and z.
 bool is_three_dimensional(std::string_view keyword) {
   if (keyword.starts_with("ST")) keyword.remove_prefix(2);
   if (keyword.starts_with("C")) keyword.remove_prefix(1);
@@ -175,8 +169,8 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Reads a number of elements and checks it against the bytes left. Each element takes at least
-// `bytes_each` bytes of text; the last one may lack its newline.
+// Reads a number of elements, and checks that so many fit into the bytes left: each takes
+// `bytes_each` bytes of text or more, but the last one may lack its newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
   if (value < 0) in.fail(fmt::format("the number of {} is {}", what, value), kDamaged);
@@ -201,7 +195,7 @@ Header read_header(TextReader& in) {
   TextReader ahead = in;
   if (ahead.token() == "BINARY")
     in.fail("the variant 'OFF BINARY' is not read", "write it as text");
-  // The counts follow on the same line or on the next.
+  // The counts are on the same line or on the next one.
   ahead = in;
   if (ahead.token().empty() && !in.next_line()) in.fail("the counts are missing", kDamaged);
 
@@ -242,7 +236,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
     const std::int64_t size = in.integer("the number of vertices of a face");
     if (size < 0) in.fail(fmt::format("a face of {} vertices", size), "correct the face");
     corners.clear();
-    // Reads corner by corner, so that a wrong size fails at the end of the line.
+    // The corners are not allocated at once, so that a wrong size fails at the end of the line.
     for (std::int64_t k = 0; k < size; ++k) {
       const std::int64_t index = in.integer("a vertex index of the face");
       if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices) {
@@ -257,22 +251,12 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-namespace {
-
-void add_vertices(const MeshPart& part, const char* before, fmt::memory_buffer& out) {
-  for (const Vec3& p : part.vertices) {
-    fmt::format_to(std::back_inserter(out), "{}{:.17g} {:.17g} {:.17g}\n", before, p.x(), p.y(),
-                   p.z());
-  }
-}
-
-}  // namespace
-
 std::string off_text(const MeshPart& part) {
   fmt::memory_buffer out;
   fmt::format_to(std::back_inserter(out), "OFF\n{} {} 0\n", part.vertices.size(),
                  part.triangles.size());
-  add_vertices(part, "", out);
+  for (const Vec3& p : part.vertices)
+    fmt::format_to(std::back_inserter(out), "{:.17g} {:.17g} {:.17g}\n", p.x(), p.y(), p.z());
   for (const auto& [a, b, c] : part.triangles)
     fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", a, b, c);
   return fmt::to_string(out);
@@ -280,11 +264,10 @@ std::string off_text(const MeshPart& part) {
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84;  // 80 arbitrary bytes, then the number of triangles
-constexpr std::size_t kTriangleBytes =
-    50;  // normal and corners as 12 floats, then 2 bytes of anything
+constexpr std::size_t kHeaderBytes = 84;    // 80 arbitrary bytes, then the number of triangles
+constexpr std::size_t kTriangleBytes = 50;  // normal and corners as 12 floats, 2 arbitrary bytes
 
-// Finds vertices by their exact positions. Adding 0.0 makes -0.0 the same key as 0.0.
+// Gives corners at one position one vertex.
 class Welder {
  public:
   explicit Welder(MeshBuilder& mesh) : mesh_(mesh) {}
@@ -309,7 +292,7 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// No text has NUL bytes; a binary file has them in its header or in its attribute bytes.
+// A text has no NUL bytes. A binary file has some in its header or in its attribute bytes.
 bool has_nul(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') != bytes.npos; }
 
 bool is_text(std::string_view bytes) {
@@ -358,7 +341,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Moves to the next word, and checks it and the words after it. They may be on several lines.
+// Reads the expected words, which may be on several lines. Throws Error if others stand there.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -371,8 +354,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line. If the whole file is on one line, stops before the word `stop`: the
-// first one that has `after` among the next few words.
+// Reads the rest of the line. Since a file may be a single line, stops before a word `stop` that
+// has `after` among the next few words.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

@@ -1,15 +1,11 @@
-// Reads PLY, ASCII and binary of either byte order. Skips elements and properties other than the
-// position of `vertex` and the index list of `face` or `tristrips`; their declared types give their
-// lengths. Reads ASCII one element per line, as the format requires.
+// Reads PLY, ASCII and binary of either byte order: the positions of `vertex`, and the index lists
+// of `face` or `tristrips`. Skips all else, whose declared types give its length.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <optional>
 #include <set>
 
-#include "core/base/error.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 
@@ -22,15 +18,23 @@ constexpr const char* kDamaged = "correct the header, or get the whole file";
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 enum class Encoding { kAscii, kLittle, kBig };
 
-std::size_t size_of(Type type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
+struct TypeInfo {
+  std::string_view name, other_name;
+  std::size_t size;  // bytes
+  bool is_signed_integer;
+};
+// In the order of Type.
+constexpr std::array<TypeInfo, 8> kTypes = {{{"char", "int8", 1, true},
+                                             {"uchar", "uint8", 1, false},
+                                             {"short", "int16", 2, true},
+                                             {"ushort", "uint16", 2, false},
+                                             {"int", "int32", 4, true},
+                                             {"uint", "uint32", 4, false},
+                                             {"float", "float32", 4, false},
+                                             {"double", "float64", 8, false}}};
 
+const TypeInfo& info_of(Type type) { return kTypes[static_cast<std::size_t>(type)]; }
 bool is_integer(Type type) { return type != Type::kFloat && type != Type::kDouble; }
-bool is_signed(Type type) {
-  return type == Type::kInt8 || type == Type::kInt16 || type == Type::kInt32;
-}
 
 struct Property {
   std::string name;
@@ -50,28 +54,14 @@ struct Header {
   std::vector<Element> elements;
 };
 
-std::optional<Type> find_type(std::string_view word) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"char", "int8"},
-                                                                      {"uchar", "uint8"},
-                                                                      {"short", "int16"},
-                                                                      {"ushort", "uint16"},
-                                                                      {"int", "int32"},
-                                                                      {"uint", "uint32"},
-                                                                      {"float", "float32"},
-                                                                      {"double", "float64"}}};
-  for (std::size_t type = 0; type < kNames.size(); ++type) {
-    if (word == kNames[type][0] || word == kNames[type][1]) return static_cast<Type>(type);
-  }
-  return std::nullopt;
-}
-
 Type read_type(TextReader& in) {
   const std::string_view word = in.token();
-  const std::optional<Type> type = find_type(word);
-  if (!type)
+  const auto found = std::ranges::find_if(
+      kTypes, [&](const TypeInfo& type) { return word == type.name || word == type.other_name; });
+  if (found == kTypes.end())
     in.fail(quote_token(word) + " is not a type of PLY",
             "use int, uchar, float, double or the like");
-  return *type;
+  return static_cast<Type>(found - kTypes.begin());
 }
 
 Encoding read_format(TextReader& in) {
@@ -135,9 +125,8 @@ Header read_header(TextReader& in) {
   }
 }
 
-// AsciiBody and BinaryBody read the values of a file's body. They have the same functions: they
-// begin and end an element, read or skip a value of a type, and give the fewest bytes that a value
-// can take and the number of bytes that are left.
+// AsciiBody and BinaryBody read the values of a file's body, and have the same functions. ASCII has
+// one element per line.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextReader& in) : in_(in) {}
@@ -153,8 +142,9 @@ class AsciiBody {
   void skip(Type) {
     if (in_.token().empty()) in_.fail("fewer values than the header declares", kDamaged);
   }
-  static std::size_t least_bytes(Type) { return 2; }  // a digit and a separator
-  // The last value of the file may lack its separator.
+  // The fewest bytes that a value takes: a digit and a separator.
+  static std::size_t least_bytes(Type) { return 2; }
+  // Counts one byte more, since the last value of the file may lack its separator.
   std::size_t bytes_left() const { return in_.bytes_left() + 1; }
   bool at_end() { return !in_.next_line(); }
   long line() const { return in_.line(); }
@@ -179,7 +169,7 @@ class BinaryBody {
     return static_cast<std::int64_t>(take(type));
   }
   void skip(Type type) { take(type); }
-  static std::size_t least_bytes(Type type) { return size_of(type); }
+  static std::size_t least_bytes(Type type) { return info_of(type).size; }
   std::size_t bytes_left() const { return bytes_.size(); }
   bool at_end() const { return bytes_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
   static long line() { return 0; }
@@ -189,7 +179,7 @@ class BinaryBody {
 
  private:
   double take(Type type) {
-    const std::size_t size = size_of(type);
+    const std::size_t size = info_of(type).size;
     if (bytes_.size() < size) fail("the file ends before its last element", kDamaged);
     std::uint64_t word = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -199,7 +189,7 @@ class BinaryBody {
     bytes_.remove_prefix(size);
     if (type == Type::kFloat) return std::bit_cast<float>(static_cast<std::uint32_t>(word));
     if (type == Type::kDouble) return std::bit_cast<double>(word);
-    if (!is_signed(type)) return static_cast<double>(word);
+    if (!info_of(type).is_signed_integer) return static_cast<double>(word);
     const std::size_t unused = 64 - 8 * size;
     return static_cast<double>(static_cast<std::int64_t>(word << unused) >> unused);
   }
@@ -209,7 +199,7 @@ class BinaryBody {
   std::string name_;
 };
 
-// Reads the length of a list, and checks it against the bytes that are left.
+// Reads the length of a list. Throws Error if such a list does not fit into the bytes left.
 template <class Body>
 std::uint64_t list_length(Body& body, const Property& list) {
   const std::int64_t length = body.integer(*list.count, "the length of a list");
@@ -254,16 +244,16 @@ bool is_index_list(const Property& property) {
   return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-// Stores faces until the vertices are known, since the elements may come in any order.
+// The faces, which are kept until the vertices are known: the elements may come in any order.
 struct Faces {
-  std::vector<std::uint32_t> corners;  // of all faces, one after the other
+  std::vector<std::uint32_t> corners;  // those of all faces, one face after the other
   std::vector<std::uint32_t> sizes;
   std::vector<long> lines;
 };
 
-/// Turns strips into triangles. Each vertex makes a triangle with the two before it; every second
+/// Turns strips into triangles. Each vertex makes a triangle with the two before it. Every second
 /// triangle is reversed, so that all face the same way. -1 begins a new strip. Triangles that name
-/// a vertex twice are left out: they only join parts of a strip.
+/// a vertex twice are left out, since they only join parts of a strip.
 class Strip {
  public:
   void add(std::int64_t index, long line, Faces& faces) {
@@ -324,16 +314,15 @@ void check_vertex(const Element& element, const std::string& name) {
 }
 
 void check_face(const Element& element, const std::string& name) {
-  const auto found =
-      std::count_if(element.properties.begin(), element.properties.end(), is_index_list);
-  if (found != 1) {
-    throw Error(name,
-                fmt::format("faces have {} lists named 'vertex_indices' or 'vertex_index'", found),
-                "give each face one such list", element.line);
+  std::vector<Property> lists;
+  std::ranges::copy_if(element.properties, std::back_inserter(lists), is_index_list);
+  if (lists.size() != 1) {
+    throw Error(
+        name,
+        fmt::format("faces have {} lists named 'vertex_indices' or 'vertex_index'", lists.size()),
+        "give each face one such list", element.line);
   }
-  const auto list =
-      std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
-  if (!is_integer(list->type)) {
+  if (!is_integer(lists[0].type)) {
     throw Error(name, "vertex indices are declared as floating-point numbers",
                 "declare them as int or uint", element.line);
   }
@@ -345,8 +334,8 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
   Faces faces;
   bool has_faces = false;
   for (const Element& element : header.elements) {
-    if (element.properties.empty()) continue;  // takes no bytes, whatever its count
-    std::size_t least = 0;                     // bytes of an element whose lists are empty
+    if (element.properties.empty()) continue;  // such elements take no bytes
+    std::size_t least = 0;                     // bytes of an element if its lists are empty
     for (const Property& p : element.properties)
       least += body.least_bytes(p.count.value_or(p.type));
     if (element.count > body.bytes_left() / std::max<std::size_t>(least, 1)) {

@@ -1,9 +1,8 @@
-// Ear clipping (Meisters: Polygons have ears, 1975) with exact signs: first a rounded sign with a
-// bound on its error, and a sum without rounding if the bound leaves a doubt.
+// Ear clipping (Meisters: Polygons have ears, 1975) with exact signs. A sign is first computed with
+// rounding. If a bound on the error leaves a doubt, a sum without rounding decides.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,7 +14,7 @@ constexpr std::size_t kMaxEarCorners = 8192;
 constexpr double kUnit = 0x1p-53;  // roundoff of one operation, relative
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 
-// A sum of products of finite doubles without rounding, in fixed point: bit 0 is 2^-2148, the
+// A sum of products of finite doubles without rounding, in fixed point. Bit 0 is 2^-2148, the
 // square of the least double. The sum of 2^32 products has at most 2148 + 2048 + 32 bits.
 class ExactSum {
  public:
@@ -25,7 +24,7 @@ class ExactSum {
     Words& sum = sums_[x.negative ^ y.negative ^ static_cast<unsigned>(minus)];
     const unsigned at = x.shift + y.shift;
     add_word(sum, x.low * y.low, at);
-    add_word(sum, x.low * y.high + x.high * y.low, at + 32);  // below 2^54
+    add_word(sum, x.low * y.high + x.high * y.low, at + 32);  // the sum is below 2^54
     add_word(sum, x.high * y.high, at + 64);
   }
   // Adds a b - c d.
@@ -38,8 +37,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // A key that orders absolute values by their leading bits: the number of the highest word that is
-  // not 0, and that word.
+  // The number of the highest word that is not 0, and that word. Sums are compared by this key,
+  // which orders their absolute values by the leading bits.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -104,14 +103,15 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// The plane perpendicular to the axis on which the normal has its largest component, or one at
-// least half as large. The normal is rounded. With n corners a product of two differences has three
-// roundings and is in at most 2 n sums. So the relative error of each product is at most (2 n + 3)
-// kUnit to first order, and less than (4 n + 8) kUnit of the computed product with all higher
-// orders (n < 2^32). Each of the 2 n products errs by kTiny / 2 more if it underflows. Let m be the
-// largest computed component, e its error, and f that of another one. `bound` is at least 2 e + f:
-// the first term is twice the rounding of all three, and 4 n kTiny covers 2 n + n. So if m exceeds
-// `bound`, its sign is right, and the other component is at most m + f, less than 2 (m - e).
+// The plane perpendicular to the axis on which the polygon's normal has its largest component, or
+// one at least half as large. The normal is rounded. If its largest component m is not certain,
+// exact areas decide.
+//
+// With n corners, a product of two differences has three roundings and is in at most 2 n sums. So
+// each of the 2 n products errs by less than (4 n + 8) kUnit of its computed value, and by kTiny /
+// 2 more if it underflows. `bound` is at least 2 e + f, where e is the error of m, and f that of
+// another component. So if m exceeds `bound`, its sign is right, and the other component is at most
+// m + f, which is less than 2 (m - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
@@ -150,7 +150,7 @@ bool collinear(std::span<const Vec3> points) {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// The rest of a polygon after cutting off ears: a ring linked through next and previous.
+// The corners of a polygon that are left after cutting off ears, linked by `next` and `previous`.
 struct Ring {
   Ring(std::span<const Vec3> points, const Plane& plane, Turn given)
       : at(points),
@@ -173,8 +173,9 @@ struct Ring {
   void classify(std::uint32_t i) { reflex[i] = turn_at(i) < 0; }
   bool same(const Vec3& a, const Vec3& b) const { return a[u] == b[u] && a[v] == b[v]; }
 
-  // Whether corner i is convex and its triangle holds no reflex corner (only those can reach into
-  // it). Corners at the position of one of its corners do not count: they are the seam of a hole.
+  // True if corner i is convex, and its triangle holds no reflex corner. Convex corners cannot be
+  // in it. A corner at the position of one of the triangle's corners does not count: it belongs to
+  // a seam, which joins a hole to the outline.
   bool is_ear(std::uint32_t i, std::uint64_t& steps) const {
     if (turn_at(i) <= 0) return false;
     const Vec3& a = at[previous[i]];
@@ -196,13 +197,15 @@ struct Ring {
     classify(next[i]);
   }
 
-  // Whether a polygon without right turns goes round once. If it does, its corners rise in
-  // lexicographic order to one highest corner and then fall.
+  // True if a polygon without right turns goes round once. Its corners then rise in lexicographic
+  // order to one highest corner, and fall after it.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
     };
-    int falls = 0, before = 0, first = 0;  // 1: the last edge with a length rose, -1: fell
+    // The directions of the previous and the first edge: 1 rises, -1 falls, 0 means no edge yet.
+    // Edges without a length are passed over.
+    int falls = 0, before = 0, first = 0;
     for (std::uint32_t i = 0; i < size(); ++i) {
       const Vec3& a = at[i];
       const Vec3& b = at[next[i]];
@@ -215,8 +218,8 @@ struct Ring {
     return falls + (before == 1 && first == -1) <= 1;
   }
 
-  // Whether the interiors of two triangles meet; both turn left or are degenerate. They do not meet
-  // if the line through an edge of one triangle has the other triangle on its outer side.
+  // True if the interiors of two triangles meet. They do not meet if the line through an edge of
+  // one triangle has the other triangle on its outer side. Precondition: both turn left.
   bool overlap(const Triangle& s, const Triangle& t) const {
     for (const auto& [x, y] : {std::pair(&s, &t), std::pair(&t, &s)}) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -229,7 +232,7 @@ struct Ring {
     return true;
   }
 
-  // Whether all of these triangles turn left or are degenerate, and no two overlap.
+  // True if these triangles turn left or are degenerate, and no two overlap.
   bool whole(std::span<const Triangle> triangles) const {
     struct Extent {
       double lo, hi;
@@ -259,36 +262,12 @@ struct Ring {
   std::vector<char> reflex;
 };
 
-// The corners times a power of two that brings the largest coordinate to [2^499, 2^500). At that
-// size certain_turn() neither overflows nor underflows: a product of two differences is below
-// 2^1002. Only a product below 2^-1022 is rounded to a multiple of the least double, and
-// certain_turn() allows for that. Returns the corners unchanged if the largest coordinate is 0 or
-// in [2^-200, 2^500), or if scaling would round one; then the largest is at least 2^1573 times the
-// lowest bit of another. Otherwise every sum of products of two coordinates is scaled exactly, by
-// the square of the power of two, so no sign and no comparison changes.
-std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& store) {
-  double largest = 0;
-  for (const Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  if (largest == 0 || (exponent > -200 && exponent <= 500)) return corners;
-  const auto times = [](const Vec3& p, int power) {
-    return Vec3(std::ldexp(p.x(), power), std::ldexp(p.y(), power), std::ldexp(p.z(), power));
-  };
-  for (const Vec3& p : corners) {
-    store.push_back(times(p, 500 - exponent));
-    if (times(store.back(), exponent - 500) != p) return corners;
-  }
-  return store;
-}
-
 }  // namespace
 
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
-  // Each product has a relative error of at most 3 kUnit to first order, and kTiny / 2 if it
-  // underflows; rounding the difference keeps its sign. 4 kUnit of the computed products cover the
-  // higher orders and the roundings of the bound. If anything overflows, the bound is infinite or
-  // NaN, and the comparison is false.
+  // Each product has three roundings, so its relative error is at most 3 kUnit to first order. If
+  // it underflows, it errs by kTiny / 2 more. 4 kUnit cover the higher orders and the roundings of
+  // the bound. If anything overflows, the bound is infinite or NaN, and the comparison is false.
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double area = left - right;
@@ -306,14 +285,12 @@ int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   return sum.sign();
 }
 
-Triangulation triangulate(std::span<const Vec3> polygon, std::vector<Triangle>& triangles,
+Triangulation triangulate(std::span<const Vec3> corners, std::vector<Triangle>& triangles,
                           Turn by) {
-  if (polygon.size() == 3) {
+  if (corners.size() == 3) {
     triangles.push_back({0, 1, 2});
     return Triangulation::whole;
   }
-  std::vector<Vec3> store;
-  const std::span<const Vec3> corners = scaled(polygon, store);
   const Plane plane = plane_of(corners);
   Ring ring(corners, plane, by);
   const std::uint32_t n = ring.size();
@@ -343,8 +320,8 @@ Triangulation triangulate(std::span<const Vec3> polygon, std::vector<Triangle>& 
     }
     i = ring.next[i];
   }
-  // The rest is convex, a triangle, or has no ear because it is degenerate or crosses itself: cut
-  // it as a fan.
+  // Cuts the rest as a fan. It is a triangle or convex, or it has no ear since it is degenerate or
+  // crosses itself.
   for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k])
     triangles.push_back({i, k, ring.next[k]});
   bool whole = false;

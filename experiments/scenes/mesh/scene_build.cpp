@@ -4,18 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <queue>
-#include <unordered_map>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -23,20 +17,21 @@ namespace {
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
-// Rodrigues' formula. The diagonal is k^2 + c (1 - k^2), with 1 - k^2 written as the other two
-// squares, so that a rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix.
+// The rows of a rotation matrix, from a quaternion, or from axis and angle by Rodrigues' formula.
+// The diagonal of that formula is k^2 + c (1 - k^2), with 1 - k^2 written as the other two squares,
+// so that a rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix. Dividing by
+// the largest part first keeps squares from overflowing and vanishing.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   if (rotation.quaternion) {
     auto [x, y, z, w] = *rotation.quaternion;
     const double most = std::max({std::abs(x), std::abs(y), std::abs(z), std::abs(w)});
-    for (double* const c : {&x, &y, &z, &w}) *c /= most;  // squares neither overflow nor vanish
+    for (double* const c : {&x, &y, &z, &w}) *c /= most;
     const double s = 2 / (x * x + y * y + z * z + w * w);
     return {Vec3(1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
             Vec3(s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)),
             Vec3(s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y))};
   }
-  Vec3 k = rotation.axis /
-           rotation.axis.cwiseAbs().maxCoeff();  // so that squares neither overflow nor vanish
+  Vec3 k = rotation.axis / rotation.axis.cwiseAbs().maxCoeff();
   k /= std::sqrt(k.x() * k.x() + k.y() * k.y() + k.z() * k.z());
   const double c = std::cos(rotation.angle);
   const double s = std::sin(rotation.angle);
@@ -62,8 +57,9 @@ void transform(const std::array<Vec3, 3>& rows, std::vector<Vec3>& points) {
   }
 }
 
-// Finds the parts that are connected through shared vertices, and numbers them in the order of
-// their first triangles. Stores each triangle's part in `part`; returns the number of parts.
+// Finds the parts of a mesh that are connected through shared vertices, and numbers them in the
+// order of their first triangles. `part` receives the part of each triangle. Returns how many there
+// are.
 std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -93,6 +89,22 @@ bool turns(const Placement::Rotation& rotation) {
   return x != 0 || y != 0 || z != 0;
 }
 
+struct Edge {
+  double squared = 0;  // square of the length
+  std::uint32_t a = 0, b = 0;
+
+  // True if this edge is divided after the other one.
+  bool operator<(const Edge& other) const {
+    if (squared != other.squared) return squared < other.squared;
+    return a != other.a ? a > other.a : b > other.b;
+  }
+  std::uint64_t key() const { return std::uint64_t{a} << 32 | b; }
+};
+
+Edge edge_between(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
+  return {(mesh.vertices[a] - mesh.vertices[b]).squaredNorm(), std::min(a, b), std::max(a, b)};
+}
+
 }  // namespace
 
 std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement) {
@@ -118,7 +130,7 @@ std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement) {
   if (placement.translate) {
     for (int i = 0; i < 3; ++i) {
       const double step = (*placement.translate)[i];
-      if (step == 0) continue;  // -0.0 + 0.0 would lose its sign
+      if (step == 0) continue;  // adding 0.0 would change -0.0
       for (Vec3& p : points) p[i] += step;
     }
   }
@@ -240,33 +252,12 @@ void append_object(const std::string& name, std::span<const Vec3> vertices,
   scene.source_face.insert(scene.source_face.end(), source_face.begin(), source_face.end());
 }
 
-namespace {
-
-// The box of a scene or a mesh.
-template <class Triangles>
-Box box_around(const Triangles& of) {
-  Box box = Box::empty();
-  for (const auto& triangle : of.triangles) {
-    for (const std::uint32_t v : triangle) box.add(of.vertices[v]);
-  }
-  return box;
-}
-
-}  // namespace
-
-Box bounds(const Scene& scene) { return box_around(scene); }
-
-Box bounds(const Mesh& mesh) { return box_around(mesh); }
-
 Vec3 centre(const Box& box) { return box.lo + (box.hi - box.lo) / 2; }
 
 double diagonal(const Box& box) {
   const Vec3 d = box.hi - box.lo;
   return std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
 }
-
-// Makes meshes by formula; only sines and cosines depend on the platform. refined() divides the
-// longest edge again and again; a heap orders the edges.
 
 namespace shapes {
 
@@ -382,26 +373,6 @@ Vec3 across(const Vec3& along, double length, Random& random) {
 }
 
 }  // namespace shapes
-
-namespace {
-
-struct Edge {
-  double squared = 0;  // square of the length
-  std::uint32_t a = 0, b = 0;
-
-  // Whether this edge is divided after the other one.
-  bool operator<(const Edge& other) const {
-    if (squared != other.squared) return squared < other.squared;
-    return a != other.a ? a > other.a : b > other.b;
-  }
-  std::uint64_t key() const { return std::uint64_t{a} << 32 | b; }
-};
-
-Edge edge_between(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
-  return {(mesh.vertices[a] - mesh.vertices[b]).squaredNorm(), std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
 
 Mesh refined(Mesh mesh, std::uint64_t wanted) {
   assert(!mesh.triangles.empty());

@@ -1,28 +1,21 @@
-// Puts meshes into a scene: places them and splits them into objects. Scene files and built-in
-// scenes share this code, so the same numbers give the same doubles. Also shapes of generated
-// scenes.
+// Puts meshes into a scene: places them, and splits them into objects. Scene files and built-in
+// scenes share this code, so that the same numbers give the same doubles. Also makes the shapes of
+// generated scenes.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <optional>
-#include <span>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "core/base/random.h"
-#include "core/scene/scene.h"
 #include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
 
-/// A matrix alone; or scale, then rotate, then translate, each step in double and about the origin.
-/// A step that is absent or does nothing (angle 0, translation 0 along an axis) is skipped, so an
-/// identity changes no bit, not even of -0.0.
+/// How points are moved: by a matrix; or by scale, then rotate, then translate, each in double and
+/// about the origin. A step that is absent or does nothing (angle 0, translation 0 along an axis)
+/// is skipped, so that an identity changes no bit, not even of -0.0.
 struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
@@ -30,8 +23,9 @@ struct Placement {
     // x, y, z, w of any length but 0, in place of axis and angle
     std::optional<std::array<double, 4>> quaternion = {};
   };
-  std::optional<std::array<std::array<double, 4>, 3>> matrix = {};  // the upper rows of a 4 x 4 one
-  std::optional<Vec3> scale;                                        // per coordinate
+  // The upper three rows of a 4 x 4 matrix. If set, the other members are empty.
+  std::optional<std::array<std::array<double, 4>, 3>> matrix = {};
+  std::optional<Vec3> scale;  // one factor for each coordinate
   std::optional<Rotation> rotate;
   std::optional<Vec3> translate;
 };
@@ -59,8 +53,8 @@ class SceneBuilder {
   /// coordinate is not finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split = Split::kNone,
            const Placement& placement = {}, bool self = false);
-  /// Takes out everything added since the last part, as a validated scene of its own. Names stay in
-  /// use.
+  /// Takes out everything that was added since the last part, as a validated scene. Its names stay
+  /// in use.
   Scene take_part();
   /// Returns the scene, validated. Nothing may be added afterwards.
   Scene finish() { return take_part(); }
@@ -70,11 +64,11 @@ class SceneBuilder {
 
   Scene scene_;
   std::string where_;
-  std::unordered_map<std::string, int>
-      names_;  // names in use, each with the last suffix tried for it
+  // The names in use, each with the number of the last suffix that was tried for it.
+  std::unordered_map<std::string, int> names_;
 };
 
-/// Cuts parts out of a mesh or a scene. The vertices given to the constructor must outlive it.
+/// Cuts parts out of a mesh or a scene. The given vertices must outlive the PartMaker.
 class PartMaker {
  public:
   explicit PartMaker(std::span<const Vec3> vertices)
@@ -87,7 +81,7 @@ class PartMaker {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::span<const Vec3> vertices_;
-  std::vector<std::uint32_t> number_;  // per vertex: its number in the current part
+  std::vector<std::uint32_t> number_;  // of each vertex, in the current part
   std::vector<std::uint32_t> used_;    // vertices of the part
   MeshPart part_;
 };
@@ -98,24 +92,26 @@ void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
 
-/// The box around all triangles of a scene; empty without triangles.
-Box bounds(const Scene& scene);
-/// The box around all triangles of a mesh.
-Box bounds(const Mesh& mesh);
+/// The box around all triangles of a Scene or a Mesh; empty without triangles.
+template <class Triangles>
+Box bounds(const Triangles& of) {
+  Box box = Box::empty();
+  for (const auto& triangle : of.triangles) {
+    for (const std::uint32_t v : triangle) box.add(of.vertices[v]);
+  }
+  return box;
+}
 /// The middle of a box that is not empty.
 Vec3 centre(const Box& box);
 /// The length of the diagonal of a box that is not empty.
 double diagonal(const Box& box);
 
-// Shapes of generated scenes, the draws that place them, and finer meshes of the same surface.
-
-/// Refines a mesh to `triangles` triangles or a few more: divides the longest edge with all its
-/// triangles, again and again (Rivara 1984). One division adds as many triangles as the edge has,
-/// two on a closed surface. New vertices are midpoints, so the surface is unchanged up to their
-/// rounding, and a closed one stays closed. A triangle that names a vertex twice is left unchanged.
-/// Edges of equal length are taken in the order of their vertices, so every run gives the same
-/// mesh. The parts of a triangle keep its source face and its group. A mesh with enough triangles
-/// is returned unchanged. Precondition: mesh has a triangle.
+/// Refines a mesh to `triangles` triangles or a few more, unless it has as many. Divides the
+/// longest edge and all its triangles, again and again (Rivara 1984). New vertices are midpoints,
+/// so the surface is unchanged up to their rounding, and a closed one stays closed. Of edges of
+/// equal length the one with the lower vertices comes first, so every run gives the same mesh. A
+/// triangle that names a vertex twice is left unchanged. The parts of a triangle keep its source
+/// face and its group. Precondition: the mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
@@ -190,8 +186,8 @@ Mesh soup(const std::vector<Corners>& list);
 /// so it is the same on every platform.
 Mesh sphere(int level);
 
-/// Vertex i * (cells + 1) + j is (i/cells, j/cells, 0), i and j from 0 to cells; each cell is two
-/// triangles.
+/// A unit square of cells x cells cells of two triangles. Vertex i * (cells + 1) + j is at
+/// (i/cells, j/cells, 0), with i and j from 0 to `cells`.
 Mesh grid(std::uint32_t cells);
 
 /// The corners of a square parallel to the x-y plane, counterclockwise seen from above; triangles
@@ -211,7 +207,7 @@ Corners shifted(Corners corners, const Vec3& by);
 /// A vector of this length perpendicular to another one, in a random direction.
 Vec3 across(const Vec3& along, double length, Random& random);
 
-/// A random point well inside the triangle.
+/// A random point inside the triangle: each corner's weight is 0.2 or more.
 Vec3 inner_point(const Corners& corners, Random& random);
 
 }  // namespace shapes

@@ -1,12 +1,12 @@
-// Reads files and tokens. std::from_chars converts numbers, with correct rounding. zlib is fed
-// piece by piece, so that memory grows with the data, not with a length that they claim.
+// Reads files and tokens. std::from_chars converts numbers, with correct rounding. zlib gets
+// compressed data piece by piece, so that memory grows with their contents, not with a length that
+// they claim.
 #include "experiments/scenes/mesh/text.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -17,7 +17,6 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
-#include <utility>
 
 #include "core/base/error.h"
 
@@ -49,8 +48,8 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// Whether a well-formed decimal number outside the range of doubles is too small rather than too
-// large. Doubles reach from 5e-324 to 2e308, so the sign of the decimal exponent decides.
+// For a well-formed decimal number outside the range of doubles: true if it is too small, false if
+// it is too large. Doubles reach from 5e-324 to 2e308, so the sign of the decimal exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
   long exponent = 0;
@@ -84,6 +83,39 @@ void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
   }
   if (std::ferror(file))
     throw Error(path, std::string("cannot be read: ") + std::strerror(errno), kNameAFile);
+}
+
+constexpr const char* kWhole = "get the whole file, or compress the mesh again with gzip";
+
+// A zlib stream that reads gzip only. The destructor frees it.
+class Inflater {
+ public:
+  Inflater() {
+    constexpr int kGzipAlone = 16 + MAX_WBITS;
+    const int code = inflateInit2(&stream, kGzipAlone);
+    if (code == Z_MEM_ERROR) throw std::bad_alloc();
+    if (code != Z_OK) throw std::logic_error("gunzip: zlib does not start");
+  }
+  ~Inflater() { inflateEnd(&stream); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  z_stream stream = {};
+};
+
+void check_size(std::uint64_t size, std::uint64_t compressed, const std::string& name,
+                const GzipLimits& limits) {
+  if (size > limits.max_bytes) {
+    throw Error(name, fmt::format("decompresses to more than {} bytes", limits.max_bytes),
+                "split the mesh");
+  }
+  if (size > limits.free_bytes && size / limits.most_ratio >= compressed) {
+    throw Error(name,
+                fmt::format("decompresses to more than {} times its {} bytes", limits.most_ratio,
+                            compressed),
+                "if it is a mesh all the same, write its contents to another file, gzip -dc FILE "
+                ">OTHER, and name that");
+  }
 }
 
 }  // namespace
@@ -256,26 +288,13 @@ std::string TextReader::rest() {
   return joined;
 }
 
-double TextReader::number(std::string_view what) { return read_number(what, true); }
-
-double TextReader::coordinate(std::string_view what) { return read_number(what, false); }
-
-double TextReader::read_number(std::string_view what, bool finite) {
+double TextReader::coordinate(std::string_view what) {
   const std::string_view text = token();
   if (text.empty()) fail(fmt::format("{} is missing", what), "complete the line");
-  double value = 0;
-  switch (parse_number(text, value)) {
-    case Number::kOk:
-      return value;
-    case Number::kMalformed:
-      fail(fmt::format("{} is {}, not a number", what, quote_token(text)),
-           "write a decimal number");
-    case Number::kNotFinite:
-      if (!finite) return std::numeric_limits<double>::quiet_NaN();
-      break;
-  }
-  fail(fmt::format("{} is {}, not a finite double", what, quote_token(text)),
-       "give it a finite value that a double can hold");
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (parse_number(text, value) == Number::kMalformed)
+    fail(fmt::format("{} is {}, not a number", what, quote_token(text)), "write a decimal number");
+  return value;
 }
 
 std::int64_t TextReader::integer(std::string_view what) {
@@ -305,43 +324,6 @@ void TextReader::fail(const std::string& reason, const std::string& remedy) cons
   throw Error(std::string(name_), reason, remedy, line_);
 }
 
-namespace {
-
-constexpr const char* kWhole = "get the whole file, or compress the mesh again with gzip";
-
-// A zlib stream that reads gzip only; frees the stream with the object.
-class Inflater {
- public:
-  Inflater() {
-    constexpr int kGzipAlone = 16 + MAX_WBITS;
-    const int code = inflateInit2(&stream, kGzipAlone);
-    if (code == Z_MEM_ERROR) throw std::bad_alloc();
-    if (code != Z_OK) throw std::logic_error("gunzip: zlib does not start");
-  }
-  ~Inflater() { inflateEnd(&stream); }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-
-  z_stream stream = {};
-};
-
-void check_size(std::uint64_t size, std::uint64_t compressed, const std::string& name,
-                const GzipLimits& limits) {
-  if (size > limits.max_bytes) {
-    throw Error(name, fmt::format("decompresses to more than {} bytes", limits.max_bytes),
-                "split the mesh");
-  }
-  if (size > limits.free_bytes && size / limits.most_ratio >= compressed) {
-    throw Error(name,
-                fmt::format("decompresses to more than {} times its {} bytes", limits.most_ratio,
-                            compressed),
-                "if it is a mesh all the same, write its contents to another file, gzip -dc FILE "
-                ">OTHER, and name that");
-  }
-}
-
-}  // namespace
-
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b\x08"); }
 
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits) {
@@ -364,7 +346,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
       rest.remove_prefix(input.size() - stream.avail_in);
       check_size(text.size() + made, bytes.size(), name, limits);
       text.append(piece.data(), made);
-      // No progress: all input has been read, but the member has not ended.
+      // All input has been read, but the gzip member has not ended.
       if (code == Z_BUF_ERROR) {
         throw Error(
             name,
@@ -394,23 +376,13 @@ std::string gzip(std::string_view bytes) {
                    Z_DEFAULT_STRATEGY) != Z_OK) {
     throw std::bad_alloc();
   }
-  std::string out;
-  std::array<char, 1 << 14> piece;
-  int code = Z_OK;
-  std::string_view rest = bytes;
-  while (code == Z_OK) {
-    if (stream.avail_in == 0 && !rest.empty()) {
-      // zlib's lengths have 32 bits.
-      const std::size_t length = std::min<std::size_t>(rest.size(), 1u << 30);
-      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));
-      stream.avail_in = static_cast<uInt>(length);
-      rest.remove_prefix(length);
-    }
-    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
-    stream.avail_out = piece.size();
-    code = deflate(&stream, rest.empty() ? Z_FINISH : Z_NO_FLUSH);
-    out.append(piece.data(), piece.size() - stream.avail_out);
-  }
+  std::string out(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int code = deflate(&stream, Z_FINISH);
+  out.resize(out.size() - stream.avail_out);
   deflateEnd(&stream);
   if (code != Z_STREAM_END) throw std::logic_error("gzip: zlib does not end");
   return out;

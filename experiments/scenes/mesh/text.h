@@ -1,10 +1,8 @@
-// Files as bytes and as text, for all readers: reads a file into one buffer, decompresses gzip (RFC
-// 1952), splits text into tokens with line numbers, and rounds numbers once, to double.
+// For all readers of meshes and scenes: reads a file into one buffer, decompresses gzip (RFC 1952),
+// splits text into tokens with line numbers, and rounds each number once, to double.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "core/scene/scene.h"
@@ -21,7 +19,6 @@ std::string read_standard_input(std::uint64_t max_bytes);
 /// A token for a message: in quotes, printable ASCII, cut after 40 characters.
 std::string quote_token(std::string_view token);
 
-/// The text with A to Z in lower case.
 std::string lower_case(std::string_view text);
 
 /// The bytes as UTF-8 without control characters: each offending byte is replaced by '?'. So a name
@@ -35,14 +32,13 @@ enum class Number { kOk, kMalformed, kNotFinite };
 /// kNotFinite. value is set only with kOk.
 Number parse_number(std::string_view token, double& value);
 
-/// A cursor over the lines and tokens of a text. The text and the name must outlive it. Tokens are
-/// separated by blanks (space, tab, CR, VT, FF). Lines end with LF; in a text that has CR and no
-/// LF, with CR. Lines without a token are passed over but counted. A byte order mark at the start
-/// is passed over.
+/// A cursor over the lines and tokens of a text. The text and the name must outlive it. Blanks
+/// (space, tab, CR, VT, FF) separate tokens. Lines end with LF, or with CR in a text without LF.
+/// Lines without a token, and a byte order mark at the start, are passed over.
 class TextReader {
  public:
   struct Rules {
-    char comment = '\0';        // a token that begins with it ends the line; none for '\0'
+    char comment = '\0';        // begins a comment, before a token; '\0': there are no comments
     bool continuation = false;  // a backslash before the end of a line joins the next line to it
   };
 
@@ -56,17 +52,15 @@ class TextReader {
   std::string_view token();
   /// The tokens that are left on the line, joined by single spaces.
   std::string rest();
-  /// The next token of the line as a finite double. Throws Error calling it `what`.
-  double number(std::string_view what);
-  /// The next token of the line as an integer. Throws Error calling it `what`.
+  /// The next token of the line as an integer. Throws Error that calls the number `what`.
   std::int64_t integer(std::string_view what);
-  /// number() for a coordinate, which may be infinite or a NaN.
+  /// The next token of the line as a double; NaN if no finite double can hold the number. Throws
+  /// Error that calls the number `what`.
   double coordinate(std::string_view what);
-  /// The next three tokens of the line as a point, whose coordinates may be infinite or NaNs.
-  /// Throws Error.
+  /// The next three tokens of the line as coordinate() reads them.
   Vec3 point();
 
-  /// 1-based line of the token read last.
+  /// The line of the token that was read last, from 1.
   long line() const { return line_; }
   /// Offset of the first byte that is not read yet.
   std::size_t offset() const { return at_; }
@@ -76,7 +70,6 @@ class TextReader {
 
  private:
   bool at_continuation(std::size_t at) const;
-  double read_number(std::string_view what, bool finite);
   void skip_blanks();
 
   std::string_view text_;
@@ -85,28 +78,27 @@ class TextReader {
   std::size_t at_ = 0;
   long line_ = 1;
   bool started_ = false;
-  char end_ = '\n';  // of a line
+  char end_ = '\n';  // the end of a line
 };
 
-/// Whether the bytes begin as gzip data do: 1f 8b, and 8 for the method "deflate".
+/// True if the bytes begin as gzip data with the method "deflate" do.
 bool is_gzip(std::string_view bytes);
 
-/// Guards against small files that fill the memory: gzip can make text a thousand times smaller.
-/// Beyond `free_bytes`, contents of more than `most_ratio` times the compressed size are refused.
+/// Limits for contents, since a small gzip file can fill the memory. Contents beyond `free_bytes`
+/// are refused if they are more than `most_ratio` times as large as the file.
 struct GzipLimits {
   std::uint64_t max_bytes = std::uint64_t{4} << 30;
   std::uint64_t free_bytes = std::uint64_t{256} << 20;
   std::uint64_t most_ratio = 100;
 };
 
-/// The contents of gzip data with one member, or with several in a row, as `cat a.gz b.gz` and pigz
-/// write them. Zeros after the last member are skipped. Checksums and lengths are checked. Throws
-/// Error naming `name` if the data are cut, damaged, followed by something else, or beyond the
-/// limits; std::bad_alloc. Precondition: is_gzip(bytes).
+/// The contents of gzip data, of one member or of several in a row, as pigz writes them. Zeros
+/// after the last member are skipped. Throws Error naming `name` if the data are cut, damaged,
+/// followed by something else, or beyond the limits; std::bad_alloc. Precondition: is_gzip(bytes).
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
 
-/// The bytes as gzip data of one member, without a time or a name: with the same zlib, the same
-/// bytes give the same data. Throws std::bad_alloc.
+/// The bytes as gzip data of one member, without a time or a name. With the same zlib, the same
+/// bytes give the same data. Throws std::bad_alloc. Precondition: less than 2^32 bytes.
 std::string gzip(std::string_view bytes);
 
 }  // namespace farcull

@@ -1,5 +1,4 @@
 #include "experiments/scenes/scene_file.h"
-#include "experiments/scenes/ignored.h"
 
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"

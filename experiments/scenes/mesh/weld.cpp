@@ -1,15 +1,35 @@
-// Keeps points in a grid, and looks for near ones in the 27 cells around a point. The cells are
-// twice as wide as the tolerance, so that rounding moves no near point beyond these 27.
-#include "experiments/scenes/mesh/near_points.h"
-
+// Merges vertices that nearly coincide, and finds out whether that would close an object.
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
+
+#include "core/base/text.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
+namespace {
+
+// Numbers points so that near points share a number. Keeps points in a grid, and looks for near
+// ones in the 27 cells around a point. The cells are twice as wide as the tolerance, so that
+// rounding moves no near point beyond these 27.
+class NearPoints {
+ public:
+  // tolerance: finite, >= 0.
+  explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
+
+  // Returns the number of the nearest kept point if it is at most the tolerance away (in double);
+  // of equally near points, the lowest number. Otherwise keeps p as number `own`.
+  std::uint32_t number(const Vec3& p, std::uint32_t own);
+
+ private:
+  using Cell = std::array<double, 3>;
+  Cell cell_of(const Vec3& p) const;
+
+  double tolerance_;
+  std::unordered_map<Cell, std::vector<std::pair<Vec3, std::uint32_t>>, PositionHash> cells_;
+};
 
 std::uint32_t NearPoints::number(const Vec3& p, std::uint32_t own) {
-  // With a tolerance of 0 each position is a cell of its own.
   const Cell centre = cell_of(p);
   const int reach = tolerance_ > 0 ? 1 : 0;
   double best = tolerance_;
@@ -38,15 +58,14 @@ std::uint32_t NearPoints::number(const Vec3& p, std::uint32_t own) {
 NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double x = p[static_cast<int>(k)] + 0.0;  // no -0.0
-    // From 2^53 on cells may share a number, but two doubles are then a cell or more apart.
+    const double x = p[static_cast<int>(k)] + 0.0;  // turns -0.0 into 0.0
+    // With a tolerance of 0 each position is a cell. From 2^53 on several cells have one number,
+    // but different doubles are then a cell or more apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
   return out;
 }
-
-namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
@@ -64,11 +83,47 @@ std::vector<Edge> odd_edges(std::vector<Edge> edges) {
 
 }  // namespace
 
+WeldTolerance parse_weld(const std::string& text, const char* option) {
+  WeldTolerance out;
+  constexpr std::string_view kSize = "*size";
+  out.relative = text.ends_with(kSize);
+  const std::string number = text.substr(0, text.size() - (out.relative ? kSize.size() : 0));
+  const std::optional<double> value = parse_number<double>(number);
+  if (!value || !std::isfinite(*value) || *value < 0) {
+    throw Error(option, "'" + text + "' is no tolerance",
+                "give a length of 0 or more in the units of the meshes, or one relative to the "
+                "diagonal of the "
+                "box around them, as in 1e-7*size");
+  }
+  out.value = *value;
+  return out;
+}
+
+std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance) {
+  const Box box = bounds(mesh);
+  const double size = std::min((box.hi - box.lo).norm(), std::numeric_limits<double>::max());
+  NearPoints near(tolerance.value * (tolerance.relative ? size : 1));
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> now(mesh.vertices.size(), kNone);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) now[v] = v;
+  }
+  std::uint64_t merged = 0;
+  for (std::uint32_t v = 0; v < now.size(); ++v) {
+    if (now[v] == kNone) continue;
+    now[v] = near.number(mesh.vertices[v], v);
+    merged += now[v] != v;
+  }
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& v : triangle) v = now[v];
+  }
+  return merged;
+}
+
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
-  // Equal positions get one number.
-  NearPoints exact(0);
+  NearPoints exact(0);  // gives equal positions one number
   std::vector<Vec3> place;
-  std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // by the index of the vertex
+  std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // keys: indices of vertices
   std::vector<Edge> edges;
   Box box = Box::empty();
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
@@ -93,7 +148,7 @@ std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
   for (int power = -13; power <= -5; ++power) {
     const double tolerance = std::pow(10.0, power);
     NearPoints near(tolerance * size);
-    std::map<std::uint32_t, std::uint32_t> now;  // in order, as weld() goes through the vertices
+    std::map<std::uint32_t, std::uint32_t> now;  // in the order in which weld() takes vertices
     for (const Edge& edge : open) now[edge[0]] = now[edge[1]] = 0;
     for (auto& [of, to] : now) to = near.number(place[of], of);
     std::vector<Edge> after;
