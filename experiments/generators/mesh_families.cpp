@@ -1,7 +1,5 @@
-// Families of meshes. Some have two or three objects: scans, plates, shells, copies, sheets, and
-// small triangles at a ground. Others have one object that is tested against itself: cloth, ropes
-// and folds. Motions have a member for each frame. Bars and hub have more contacts than buffers of
-// a fixed size.
+// The families of meshes, which docs/suite.md describes one by one. A motion has a member for each
+// frame.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +15,6 @@ std::uint32_t last(const SuiteObject& object) {
   return static_cast<std::uint32_t>(object.vertices.size() - 1);
 }
 
-/// Adds the triangle of the last three vertices.
 void add_last(SuiteObject& object) { object.add(last(object) - 2, last(object) - 1, last(object)); }
 
 /// A sheet of `columns` by `rows` cells whose vertex (i, j) is at place(i, j).
@@ -37,7 +34,6 @@ double folded(int i, int width) {
   return layer % 2 == 0 ? within : width - within;
 }
 
-/// A cloth folded into four layers, `gap` apart, with noise of about half a gap.
 Objects cloth(RandomDraws& draws, double gap, int cells) {
   const int width = cells / 2;
   return {sheet(4 * width, cells, [&](int i, int j) {
@@ -48,7 +44,6 @@ Objects cloth(RandomDraws& draws, double gap, int cells) {
   })};
 }
 
-/// A sheet folded flat: all layers are in the plane z = 0, each slightly beside the others.
 Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,
@@ -65,7 +60,6 @@ Vec3 on_circle(int i, int per_quarter) {
   return turned[i / per_quarter % 4];
 }
 
-/// A tube that winds three times around; windings are one pitch (in diameters) above each other.
 Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
   const int around = 12;
   const int turn = 4 * per_quarter;
@@ -84,7 +78,6 @@ Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
   return {std::move(out)};
 }
 
-/// Pages with one edge in common; some of them lie in one plane, on the same side of the edge.
 Objects book(RandomDraws& draws, double pages, int directions) {
   SuiteObject out;
   out.vertices = {Vec3(0, 0, -1), Vec3(0, 0, 1)};
@@ -99,7 +92,6 @@ Objects book(RandomDraws& draws, double pages, int directions) {
   return {std::move(out)};
 }
 
-/// A crumpled sheet in which one triangle in `one_in` is a segment or a point.
 Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   SuiteObject out = sheet(cells, cells, [&](int i, int j) {
     const double x = i + draws.coarse(-0.75, 0.75);
@@ -120,7 +112,6 @@ Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   return {std::move(out)};
 }
 
-/// An icosahedron, each triangle divided into 4^level, on the unit sphere.
 SuiteObject sphere(int level) {
   Mesh mesh = shapes::sphere(level);
   return {std::move(mesh.vertices), std::move(mesh.triangles)};
@@ -149,8 +140,8 @@ SuiteObject scan(RandomDraws& draws, int level) {
   return out;
 }
 
-/// Two scans that touch or overlap: the leftmost vertex of the second along x is left of the
-/// rightmost vertex of the first by the depth.
+/// The leftmost vertex of the second scan along x is left of the rightmost of the first by the
+/// depth.
 Objects scans(RandomDraws& draws, double depth, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = scan(draws, level);
@@ -177,8 +168,8 @@ Objects scaled_scans(RandomDraws& draws, double scale, int level) {
   return out;
 }
 
-/// A box from `lo` to `hi`. Its top and its bottom are fans of long thin triangles from one corner
-/// to `steps` points on each of the two edges that do not meet this corner.
+/// A box. Its top and its bottom are fans of long thin triangles from one corner to `steps` points
+/// on each of the two opposite edges.
 SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   SuiteObject out;
   for (const double z : {lo.z(), hi.z()}) {
@@ -191,7 +182,6 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
     for (std::uint32_t i = 1; i <= 2 * static_cast<std::uint32_t>(steps); ++i)
       out.add(first, first + i, first + i + 1);
   }
-  // The sides connect the four corners below with those above.
   const auto n = static_cast<std::uint32_t>(steps);
   const std::uint32_t above = 2 * n + 2;
   const std::array<std::uint32_t, 5> corner = {0, 1, n + 1, 2 * n + 1, 0};
@@ -202,7 +192,6 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   return out;
 }
 
-/// Two plates that lie on each other, and a bar through both, all made 2^halvings times narrower.
 /// Coordinates have few bits, so the faces that touch are exactly in one plane.
 Objects plates(RandomDraws&, double slivers, int halvings) {
   const double width = std::ldexp(1, -halvings);
@@ -215,8 +204,7 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// Three shells, each outside the previous one by the gap. The outermost is moved by 1.5 gaps along
-/// x and a random vector of up to a gap along each axis, so that it mostly crosses the middle one.
+/// The outermost shell is moved by more than the gap, so that it mostly crosses the middle one.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -228,7 +216,6 @@ Objects shells(RandomDraws& draws, double gap, int level) {
   return out;
 }
 
-/// A scan, and its copy moved by `units` times 2^-52, with the triangles in the opposite order.
 Objects copies(RandomDraws& draws, double units, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = a;
@@ -237,8 +224,6 @@ Objects copies(RandomDraws& draws, double units, int level) {
   return {std::move(a), std::move(b)};
 }
 
-/// Two large triangles in one plane, and many small triangles that cross that plane, have a corner
-/// in it, or lie close to it.
 Objects ground(RandomDraws& draws, double ratio, int count) {
   SuiteObject large;
   large.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
@@ -255,8 +240,6 @@ Objects ground(RandomDraws& draws, double ratio, int count) {
   return {std::move(large), std::move(small)};
 }
 
-/// Two sheets, one above the other by the gap; some vertices of the upper one touch the lower one
-/// or are below it.
 Objects sheets(RandomDraws& draws, double gap, int cells) {
   const auto above = [&](int i, int j) {
     const double height = draws.chance(20) ? gap * draws.whole(-1, 0) : gap;
@@ -304,14 +287,11 @@ Objects leaning(RandomDraws& draws, Objects objects) {
   return objects;
 }
 
-/// A wall 1/8 thick around x = 0, and a plate 2^-10 thick at x = `now`. A plate inside the wall
-/// meets none of the wall's triangles.
 Objects tunnel(RandomDraws& draws, double now, int) {
   return leaning(draws, {box_object(Vec3(-0x1p-4, -4, -4), Vec3(0x1p-4, 4, 4)),
                          box_object(Vec3(now, -1, -1), Vec3(now + 0x1p-10, 1, 1))});
 }
 
-/// Six boxes that rest on each other and on a floor; the upper three are lifted by `now`.
 Objects stack(RandomDraws& draws, double now, int) {
   Objects out = {box_object(Vec3(-4, -4, -1), Vec3(4, 4, 0))};
   for (int i = 0; i < 6; ++i) {
@@ -322,8 +302,7 @@ Objects stack(RandomDraws& draws, double now, int) {
   return leaning(draws, std::move(out));
 }
 
-/// A thread through a ring. It moves along its axis by 1.5 with each frame, and lies `now` away
-/// from the ring's axis. If `now` is 7/8, its side touches an edge of the ring.
+/// If `now` is 7/8, the side of the thread touches an edge of the ring.
 Objects thread(RandomDraws& draws, double now, int frame) {
   Mesh ring = shapes::surface(16, 4, true, [](std::uint32_t i, std::uint32_t j) -> Vec3 {
     const double radius = j == 0 || j == 3 ? 1 : 1.5;
@@ -336,8 +315,6 @@ Objects thread(RandomDraws& draws, double now, int frame) {
   return leaning(draws, {{std::move(ring.vertices), std::move(ring.triangles)}, std::move(rod)});
 }
 
-/// Two cogs, mirror images of each other. Both turn by `now` 32ths of a quarter turn. Their teeth
-/// meet tip to tip at x = 1, or not at all; how deep they meet depends on rounding.
 Objects cogs(RandomDraws&, double now, int) {
   const Vec3 turn = on_circle(static_cast<int>(now), 32);
   SuiteObject cog;
@@ -361,9 +338,6 @@ Objects cogs(RandomDraws&, double now, int) {
   return {std::move(cog), std::move(other)};
 }
 
-// Families with very many pairs that meet.
-
-/// n long thin triangles along x, and n along y. Each of the first crosses each of the others.
 Objects bars(RandomDraws&, double, int n) {
   Objects out(2);
   const double width = 0.25 / n;
@@ -378,7 +352,6 @@ Objects bars(RandomDraws&, double, int n) {
   return out;
 }
 
-/// One triangle, and n times n small ones that cross it.
 Objects hub(RandomDraws& draws, double, int n) {
   Objects out(2);
   out[0].vertices = {Vec3(-8, -8, 0), Vec3(8, -8, 0), Vec3(0, 8, 0)};
@@ -392,7 +365,6 @@ Objects hub(RandomDraws& draws, double, int n) {
   return out;
 }
 
-/// A motion with a frame for each of the values.
 MeshFamily motion(const char* name, decltype(MeshFamily::make) make,
                   const std::vector<double>& values) {
   MeshFamily out{.name = name, .make = make, .members = {}};

@@ -1,5 +1,4 @@
-// The families of pairs of a suite. Three groups vary the contact of two triangles, their distance,
-// or their shape. Most pairs are made of whole numbers, so that a contact is exact.
+// The families of pairs of a suite, which docs/suite.md describes one by one.
 #include <cmath>
 
 #include "experiments/generators/pair_generators.h"
@@ -182,7 +181,6 @@ MadePair coplanar_step(RandomDraws& draws, double steps) {
   return pair;
 }
 
-/// A copy of a triangle, moved along one axis of the coordinates.
 MadePair duplicates(RandomDraws& draws, double units) {
   constexpr double kExtent = 0x1p50;
   MadePair out;
@@ -203,9 +201,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
   return out;
 }
 
-// The families of distances: gaps on both sides of contact, distances from the origin, and scales.
-// The families of shapes: random triangles, slivers, degenerate triangles, and neighbours that
-// fold.
+// The families of distances, and those of shapes.
 
 /// 2^-k and -2^-k for each k below. 0 comes first; with zero_each, before each k.
 std::vector<double> signed_powers(bool zero_each) {
@@ -231,7 +227,6 @@ MadePair mapped(const Frame& frame, const Corners& a, const Corners& b) {
   return out;
 }
 
-/// A corner of b lies above the inside of a by the gap. If the gap is negative, it lies below.
 MadePair gap_face(RandomDraws& draws, double gap) {
   const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
                      Vec3(draws.coarse(-1, 0), 1, 0)};
@@ -247,7 +242,6 @@ MadePair gap_face(RandomDraws& draws, double gap) {
   return mapped(frame_of(draws), a, b);
 }
 
-/// An edge of b crosses an edge of a above it, by the gap; below it if the gap is negative.
 MadePair gap_edge(RandomDraws& draws, double gap) {
   const double left = -draws.coarse(0.25, 1);
   const double right = draws.coarse(0.25, 1);
@@ -277,7 +271,6 @@ MadePair near_pair(RandomDraws& draws) {
   return out;
 }
 
-/// A pair far from the origin, where coordinates lose their last bits.
 MadePair far_away(RandomDraws& draws, double distance) {
   MadePair pair = near_pair(draws);
   Vec3 to = draws.point();
@@ -298,7 +291,6 @@ MadePair scales(RandomDraws& draws, double scale) {
   return pair;
 }
 
-/// b is about `ratio` times smaller than a, and lies at a corner, an edge or the face of a.
 MadePair mixed_scales(RandomDraws& draws, double ratio) {
   const Frame frame = frame_of(draws);
   const auto drawn = [&] {
@@ -335,7 +327,6 @@ Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
   return {centre - half, centre + half, centre + along * half + beside};
 }
 
-/// Two slivers whose long edges pass each other at about their width.
 MadePair slivers(RandomDraws& draws, double aspect) {
   const Vec3 centre = draws.point();
   const Corners a = sliver(draws, centre, aspect);

@@ -123,7 +123,6 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
       std::memcpy(copies + begin, converted.data(), 4 * size);
       continue;
     }
-    // Names the first index that is out of range.
     for (std::size_t k = begin; k < end; ++k) {
       const Index v = from[k];
       copies[k] = static_cast<std::uint32_t>(v);
@@ -220,7 +219,6 @@ bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, 
   return same;
 }
 
-// For each vertex, the object whose triangles use it.
 std::vector<std::uint32_t> objects_of_vertices(const Scene& scene, std::size_t vertices) {
   std::vector<std::uint32_t> out(vertices, kNoObject);
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {

@@ -1,5 +1,4 @@
-// Collider and DistanceFinder. Each copies its input into a scene, and calls run() or distances()
-// (experiments/method/run.h, experiments/method/distances.h).
+// Collider and DistanceFinder. Each copies its input into a scene, and calls run() or distances().
 #include <algorithm>
 #include <cmath>
 

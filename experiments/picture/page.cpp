@@ -1,6 +1,5 @@
-// Pages that show a scene in a browser. The triangles, the colliding pairs and the answers of each
-// step are put into the pages of web/ as compressed blocks, with a JSON text that names the blocks.
-// A block of numbers holds their differences by byte, compressed by zlib and written as Base64.
+// Pages that show a scene in a browser: the files of web/, a JSON text, and the blocks of numbers
+// (packed_numbers()) that the text names.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -92,7 +91,6 @@ std::string for_script(const json& data) {
   return out;
 }
 
-// Throws Error naming --html if a page cannot hold the scene.
 void require_size(const Scene& scene) {
   if (scene.triangles.empty())
     throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
@@ -115,7 +113,6 @@ struct PageBlocks {
   int count = 0;
 };
 
-// The corners of the box, and its extents relative to the largest one.
 json page_box(const Box& box) {
   const Vec3 extent = 0.5 * box.hi - 0.5 * box.lo;
   const double largest = extent.maxCoeff();
@@ -140,7 +137,6 @@ json frame_of(const Scene& scene, const Box& box, PageBlocks& blocks) {
           {"corners", blocks.add(packed_numbers(corners))}};
 }
 
-// Replaces the first occurrence of `mark` in the page.
 void put(std::string& page, const std::string& mark, std::string_view text) {
   const std::size_t at = page.find(mark);
   if (at == std::string::npos) throw std::logic_error("page without " + mark);

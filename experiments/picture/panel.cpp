@@ -1,5 +1,4 @@
-// Parts of every panel: triangles painted over an image, missed triangles with rings around them,
-// and the text above a panel.
+// Triangles painted over an image, rings around missed triangles, and the text above a panel.
 #include "experiments/picture/panel.h"
 
 #include <fmt/format.h>

@@ -129,7 +129,6 @@ struct PanelResult {
   int left = 0, top = 0, width = 0, height = 0;  // place of the panel's picture in the image, px
 };
 
-/// A panel of the picture, and its contents.
 struct DrawnPanel {
   SheetPanel sheet;
   PanelResult result;

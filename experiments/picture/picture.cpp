@@ -1,6 +1,5 @@
-// Checks the arguments of a picture, and makes the picture: runs the methods, compares their pairs
-// with the truth, and draws a panel for each. Objects are pale, collisions strong, and missed pairs
-// red.
+// Makes a picture: runs the methods, compares their pairs with the truth, and draws a panel for
+// each.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>

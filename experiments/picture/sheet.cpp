@@ -1,5 +1,4 @@
-// Paints rectangles, rings and text into an image, and writes it as PNG. Pango and cairo render a
-// text as coverage of pixels, which is blended in the colour of the text.
+// Paints rectangles, rings and text into an image, and writes it as PNG.
 #include <fmt/format.h>
 #include <pango/pangocairo.h>
 #include <zlib.h>

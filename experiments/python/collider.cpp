@@ -143,7 +143,6 @@ py::dict columns_of(const std::vector<DistanceAnswer>& answers, bool exact) {
                   "normals"_a = normals, "features"_a = features, "inside"_a = inside);
 }
 
-// A tuple with the name of each value.
 template <class Values, class Name>
 py::tuple tuple_of(const Values& values, const Name& name) {
   py::list out;

@@ -1,7 +1,5 @@
-// Runs calls in their own threads, turns exceptions of C++ into those of Python, converts the
-// arrays of the package, and defines the compiled module. Users call the package farcull/ around
-// it, which checks arguments and makes arrays contiguous. Messages name parameters, not options:
-// depth_format, not "--depth-format".
+// The compiled module of the package farcull/, which checks arguments before it calls the module.
+// Messages name parameters, not options: depth_format, not "--depth-format".
 #include "experiments/python/arrays.h"
 
 #include <cxxabi.h>
@@ -24,10 +22,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};  // time between checks for signals
 
-// Raises a limit of the GNU C library, up to which free memory stays with the process: twice the
-// largest block that was mapped and freed before, at most 32 MB. While the limit is low, each call
-// requests the same pages again, and writing to new pages took half of the time of small scenes. So
-// one large block is mapped and freed. A limit that the environment or mallopt() has set stays.
+// Raises a limit of the GNU C library, up to which free memory stays with the process, by mapping
+// and freeing one large block. Otherwise each call requests the same pages again, which took half
+// of the time of small scenes. A limit that the environment or mallopt() has set stays.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -123,7 +120,6 @@ bool is_parameter(std::string_view where) {
   return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
 }
 
-// The Python names of the library's parameters.
 std::string parameter_of(const std::string& where) {
   if (where == "self_objects") return "self";
   if (where == "vertices") return "V";

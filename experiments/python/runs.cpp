@@ -184,7 +184,6 @@ void add_scenes(py::module_& module) {
 
 namespace {
 
-// A record, with its scene.
 struct KeptRecord {
   std::shared_ptr<const Scene> scene;
   Record record;
@@ -314,7 +313,6 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
   return py::make_tuple(pixels, shown, html);
 }
 
-// The answer of clashes(), with the scene that it is about.
 struct KeptClash {
   std::shared_ptr<const Scene> scene;
   ClashRecord record;

@@ -1,5 +1,4 @@
-// Checks a certificate, a list of pairs, or both against a scene, by the checker of
-// verify/certificate. Turns the findings into text and JSON.
+// Checks a certificate, a list of pairs, or both, by the checker of verify/certificate.
 #include "experiments/record/check.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
-// Writes the record of `farcull clash` as text, CSV and JSON, compares it with an earlier CSV, and
-// collects the records of frames.
+// Writes, compares and collects the records of `farcull clash`.
 #include "experiments/record/output.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// Turns a record into JSON, its colliding pairs into CSV, and its claims into a certificate. Turns
-// a plan into a table and into JSON.
+// Turns a record into JSON, CSV and a certificate, and a plan into a table and JSON.
 #include "experiments/record/output.h"
 
 #include <algorithm>
@@ -25,7 +24,6 @@ Json view_json(const ViewReport& view) {
   return out;
 }
 
-// Work of a GL device in drawing.
 Json device_work_json(const CanvasWork& work) {
   if (work.passes == 0) return nullptr;
   Json out = {{"passes", work.passes}, {"draw_calls", work.draws}};

@@ -75,12 +75,10 @@ inline nlohmann::ordered_json point_json(const Vec3& p) { return {p.x(), p.y(), 
 /// The record as JSON. Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
-/// The names and versions of a GL device.
 nlohmann::ordered_json gl_json(const GlInfo& gl);
 /// The number of threads of a software device; null for other devices.
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
-/// The floating-point environments of the caller and of the run.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
 /// NotAsked (verify/certificate/certificate.h) of the scene: how many objects are not tested

@@ -174,7 +174,6 @@ std::string accounting_lines(const Scene& scene, const Record& record) {
   return out;
 }
 
-// Elements and queries of the methods that draw.
 std::string work_line(const Record& record) {
   if (!record.found.drew()) return "";
   const Stage sum = work_of(record.trace);
@@ -186,7 +185,6 @@ std::string work_line(const Record& record) {
                                        grouped(sum.draws_saved), grouped(sum.queries_saved)));
 }
 
-// Work of a GL device in drawing.
 std::string device_work_line(const Record& record) {
   const CanvasWork& work = record.found.asked;
   if (work.passes == 0) return "";

@@ -1,5 +1,4 @@
-// Reads scene files, mesh files and built-in scenes. A scene file is JSON: its syntax is checked
-// first, to name the line of an error, then its values are read one by one.
+// Reads scene files, mesh files and built-in scenes.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>

@@ -71,19 +71,7 @@ struct SceneArguments {
 /// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz). Each is an object with the
 ///   name of its file without extension, and with its folder if another file has the same name;
 /// - one built-in scene, perhaps with numbers and suffixes (builtin/scenes.h);
-/// - one scene file, JSON:
-///     {"name": "two-bunnies", "objects": [
-///       {"name": "a", "mesh": "bunny00.off"},
-///       {"mesh": "bunny00.off", "scale": 1, "rotate": {"axis": [0, 0, 1], "angle": 0.7},
-///        "translate": [0.02, 0.0026, 0.0014], "split": "none",
-///        "self": false}],
-///      "ignore": [["a", "bunny00"], ["link*", "base"]]}
-///   Only `objects` and `mesh` must be there (docs/scenes.md has all keys). `mesh` is relative to
-///   the scene file. Angles are in radians about an axis through the origin. A mesh is placed as
-///   Placement says. `split` is "none", "groups" (the groups of an OBJ) or "components" (triangles
-///   connected through shared vertices). `self`: whether the object, or each part of it, is tested
-///   against itself as well. `ignore`: pairs of objects that are not tested against each other, by
-///   patterns of their names in the scene.
+/// - one scene file, JSON (docs/scenes.md).
 /// A mesh that is named several times is read once. If meshes are welded, the name of the scene
 /// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error if
 /// an argument cannot be read or is not of this form. The Error names the file; in a scene file
@@ -100,7 +88,7 @@ Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 /// Whether load_scene() treats the name as that of a scene file.
 bool is_scene_file(const std::string& name);
 /// The paths of the meshes that a scene file names, each as often as it is named. If the file
-/// cannot be read or is not of the form above, returns the paths that were found.
+/// cannot be read or is no scene file, returns the paths that were found.
 std::vector<std::string> meshes_of_scene_file(const std::string& path);
 
 /// load_scene() for the text of a scene file. `path` is named in errors, and mesh paths are

@@ -1,6 +1,5 @@
-// Writes a file beside its path and renames it, so that a reader sees the old file or the new one.
-// A file that grows is written once in this way; each addition then overwrites the file's end.
-// Signal handlers allocate no memory and take no lock.
+// Writes a file beside its path and renames it. Signal handlers allocate no memory and take no
+// lock.
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>

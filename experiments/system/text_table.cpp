@@ -1,5 +1,4 @@
-// Breaks lines and lays out tables. Widths count characters of UTF-8. Colours are ANSI escape
-// sequences, which every terminal except a dumb one understands.
+// Breaks lines and lays out tables. Widths count characters of UTF-8.
 #include "experiments/system/text_table.h"
 
 #include <unistd.h>

@@ -186,8 +186,7 @@ def arrays(
 
 def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
     """The answer of the compiled collider or finder of ``owner``. ``owner._grouped`` becomes ``grouped``, unless a
-    signal
-    handler called the owner meanwhile: then that call was the last one."""
+    signal handler called the owner meanwhile: then that call was the last one."""
     turn = object()
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")

@@ -1,6 +1,5 @@
-// Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Also
-// scenes that one number takes to an extreme: slivers of any aspect, gaps of any number of ulps,
-// stacks of sheets at any distance, and triangles of any ratio of sizes.
+// Scenes for benchmarks: a field of any size, needles whose boxes overlap by the million, and
+// scenes that one number takes to an extreme.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -59,8 +58,6 @@ class Blobs {
   std::uint64_t count_, next_ = 0;
   std::uint64_t cells_ = 1;  // cells along each axis of the cube that the blobs fill from below
 };
-
-// ---- needles ----
 
 constexpr double kLength = 4700;  // length of a needle
 constexpr double kWidth = 0.002;

@@ -1,5 +1,5 @@
-// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, a machine
-// part cut in two, and the cloth of funnel.cpp.
+// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, a part cut in
+// two.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// A cloth that hangs in a funnel in pleats. More triangles sample the smooth surface of the cloth
-// more finely; the triangles of the funnel around it stay large.
+// A cloth that hangs in a funnel in pleats. A larger scene has more triangles in the cloth; the
+// triangles of the funnel stay large.
 #include <algorithm>
 #include <cmath>
 

@@ -85,13 +85,10 @@ Scene self_colliding(const std::string& name, const char* file) {
   return scene;
 }
 
-// ---- the dragon of the papers ----
-
 constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
 constexpr std::uint32_t kPieces = 200;
 constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times of the first and the last piece
 
-// A part of the dragon.
 struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;

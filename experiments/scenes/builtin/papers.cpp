@@ -1,7 +1,7 @@
-// Scenes that move. Most are generated versions of scenes of the papers: deforming cylinders and
-// torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall
-// from a tree and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004). Shapes, counts
-// and kinds of motion are those of the papers. One more scene has open sheets.
+// Scenes that move. Most are generated versions of scenes of the papers, with their shapes, counts
+// and motions: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha,
+// Graphics Hardware 2003), falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha,
+// VRST 2004).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -246,8 +246,8 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   return halfway(std::move(built));
 }
 
-// ---- sheets for which no argument about closed meshes holds: they are open, three triangles meet
-// at some edges, and they are too close to each other for a depth buffer of 24 bits ----
+// ---- open sheets, for which no argument about closed meshes holds, and which are too close to
+// each other for a depth buffer of 24 bits ----
 
 constexpr std::uint32_t kCells = 18;  // cells along a side; the side is 1 long
 constexpr double kGrain = 0x1p-40;    // heights are multiples of it

@@ -1,5 +1,4 @@
-// Lists the scenes of all generators, reads names with their numbers and suffixes, and calls the
-// motion of a scene for each frame.
+// Lists the built-in scenes, reads their names, and calls their motions.
 #include "experiments/scenes/builtin/scenes.h"
 
 #include <fmt/format.h>

@@ -187,8 +187,6 @@ Mesh packaged(const char* file);
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
-// The generators of built-in scenes.
-
 /// The distance between neighbouring sheets in the stack of the scene "shells".
 inline constexpr double kShellGap = 0x1p-34;
 

@@ -2,11 +2,10 @@
 // contact with friction. The cloth has no contact with itself, so its folds pass through each
 // other, and the scene has intersecting triangles within one moving object.
 //
-// A step is implicit Euler, as the minimum of a convex function of the new positions (Gast et al.
-// 2015, "Optimization integrator for large time steps", made convex as in Eyre 1998). So a step has
-// one solution at every stiffness, and the total energy grows in a step by at most
-// ClothReport::slack, up to rounding. The same settings give the same bits on the same machine.
-// docs/cloth.md has the equations and the proof of the energy bound, with the same names as here.
+// The end of a step is the minimum of a strictly convex function. So a step has one solution at
+// every stiffness, and the total energy grows in a step by at most ClothReport::slack, up to
+// rounding. docs/cloth.md has the equations, the sources and the proof. The same settings give the
+// same bits on the same machine.
 #pragma once
 
 #include <Eigen/Core>
@@ -93,27 +92,20 @@ struct Energies {
 };
 Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity);
 
-/// One step from x0 with velocity v0: minimize
-///   sum m/(2 h^2) |x - x0 - h v0|^2 + drag area/(2 h) |x - x0|^2      inertia, air
-///   + sum S(k + T, l - l*) - T d0.d                                   springs; l* = k L/(k + T)
-///   + bending(x) + sum m g z
-///   + sum S(c, R - n.x) + mu N H(|P (x - x0)|)                        contact, friction
-/// with h = time_step, k = stiffness, T = buckling_load, L = the length at rest, R = radius, mu =
-/// friction, S = smooth_energy, d an edge, l = |d|, d0 the same edge at x0, n = x0/|x0|, P = I - n
-/// n', c = contact_stiffness, N the contact force at x0, and H Huber's function: s^2/(2 e) for s <=
-/// e = h stick_speed, s - e/2 above. Strictly convex.
+/// A step from x0 with velocity v0. Its end minimizes the strictly convex function F of the new
+/// positions (docs/cloth.md, "A step").
 struct Step {
   const Model& model;
   Eigen::VectorXd x0;
   Eigen::VectorXd v0;
-  std::vector<Vec3> normal;      // n of each vertex; 0 if there is no sphere
-  std::vector<double> friction;  // mu N of each vertex, newtons
-  double stretch = 0;            // k + T, N/m
+  std::vector<Vec3> normal;      // x0/|x0| of each vertex; 0 if there is no sphere
+  std::vector<double> friction;  // coefficient times contact force at x0, N
+  double stretch = 0;            // stiffness + buckling_load, N/m
 };
 /// Precondition: sizes are those of the model. The model must outlive the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
 
-/// The gradient of this function at x, N. Resizes `result`.
+/// The gradient of F at x, N. Resizes `result`.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The force (N) of a spring of stiffness c that is stretched by e: the f > 0 with f (f/c - e) =
@@ -123,12 +115,12 @@ double smooth_force(double c, double crimp, double e);
 double smooth_stiffness(double c, double crimp, double e);
 double smooth_energy(double c, double crimp, double e);
 
-/// l*, the length at which the convex spring begins to pull, m.
+/// The length at which the convex spring begins to pull, m (docs/cloth.md, l*).
 double slack_length(const Model& model, std::size_t spring);
 /// Stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
-/// The gradient without the terms in S, those of springs and contact; with thrust and friction.
+/// The gradient without the smooth forces of springs and contact.
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.

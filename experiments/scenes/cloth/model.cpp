@@ -1,5 +1,4 @@
-// Builds springs, hinges and masses of the cloth, and evaluates the terms of a time step with their
-// derivatives.
+// Builds the cloth, and evaluates the terms of a time step with their derivatives.
 #include "experiments/scenes/cloth/cloth.h"
 
 #include <fmt/format.h>
@@ -94,11 +93,7 @@ void place(Model& model) {
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // The stiffness that gives the cloth the bending energy of a plate, rigidity / 2 kappa^2 per area
-  // at curvature kappa. There is one edge along the grid per cell and direction. Its hinge has |w|
-  // = kappa cell^2 / 2 and the energy stiffness / 2 |w|^2, so stiffness = 4 rigidity / cell^2.
-  // There is one diagonal per cell. At a twist kappa its hinge has the same |w|, but the plate has
-  // twice the energy, so the stiffness of a diagonal is doubled.
+  // The cloth bends like a plate of this rigidity (docs/cloth.md, "Model").
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};

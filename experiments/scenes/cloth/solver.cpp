@@ -1,6 +1,5 @@
-// The solver minimizes the function of a step, by Newton's method with a line search, or by
-// interior points: Nesterov and Todd's scaling of each cone, and moves that stay inside. A Cloth
-// makes one step after the other.
+// Minimizes the function of a step, by Newton's method with a line search, or by interior points
+// with the scaling of Nesterov and Todd (docs/cloth.md, "Solver").
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -147,7 +146,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.mixed = eta * 2 * wt * wd;
     spring.whole = eta * (2 * wd * wd.transpose() + Block::Identity());
     spring.across = step_.stretch + tt;
-    // The equations dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c) give du_t.
+    // The equations dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - length - z_t/c), with c
+    // = stretch, give du_t.
     const double inverse = target / (size_u * size_u);
     spring.right =
         inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
@@ -302,7 +302,7 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   // A stored coordinate errs by up to 2^-53 |x|. An error of either end of a spring changes its
-  // force by k + T times the error. A vertex has at most 8 springs and 3 coordinates.
+  // force by `stretch` times the error. A vertex has at most 8 springs and 3 coordinates.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;

@@ -1,5 +1,5 @@
 // Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
-// meshes by their real paths. Compressed contents are decompressed first.
+// meshes by their real paths.
 #include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>

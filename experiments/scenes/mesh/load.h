@@ -123,8 +123,6 @@ class MeshCache {
 /// The name of a file without its folder, without .gz and without its extension.
 std::string mesh_stem(const std::string& path);
 
-// Internals of the mesh readers: the functions that assemble a mesh, and one reader per format.
-
 /// Collects vertices and polygons, checks them and triangulates. `line`: of the file; 0 for formats
 /// without lines.
 class MeshBuilder {

@@ -1,14 +1,7 @@
-// Reads and writes Wavefront OBJ and OFF; reads STL.
-//
-// OBJ: polygons, groups and objects. Materials, normals, texture coordinates, points and lines are
-// skipped; free-form surfaces are refused, since skipping them would lose geometry.
-//
-// OFF, as Geomview writes it: a header, the counts, then a line for each vertex and each face.
-// Skips normals, colours and texture coordinates after the position of a vertex, if the header
-// declares them (NOFF, COFF, STOFF and their combinations), and colours at the end of a face line.
-//
-// STL, ASCII and binary. A binary file may begin with "solid" too, so the length of the file is
-// checked before its contents.
+// Reads and writes Wavefront OBJ and OFF (as Geomview writes it); reads STL. Skips materials,
+// normals, colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces,
+// since skipping them would lose geometry. A binary STL file may begin with "solid" too, so its
+// length is checked before its contents.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Reads PLY, ASCII and binary of either byte order: the positions of `vertex`, and the index lists
-// of `face` or `tristrips`. Skips all else, whose declared types give its length.
+// of `face` or `tristrips`. All else is skipped.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Ear clipping (Meisters: Polygons have ears, 1975) with exact signs. A sign is first computed with
-// rounding. If a bound on the error leaves a doubt, a sum without rounding decides.
+// Ear clipping (Meisters: Polygons have ears, 1975). Each sign is computed with rounding, and again
+// without if a bound on the error leaves a doubt.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>

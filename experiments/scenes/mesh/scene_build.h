@@ -118,7 +118,6 @@ namespace shapes {
 
 constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
-/// Random points, directions and placements.
 class Random : public RandomNumbers {
  public:
   using RandomNumbers::RandomNumbers;

@@ -1,6 +1,5 @@
-// Reads files and tokens. std::from_chars converts numbers, with correct rounding. zlib gets
-// compressed data piece by piece, so that memory grows with their contents, not with a length that
-// they claim.
+// Reads files and tokens. zlib gets compressed data piece by piece, so that memory grows with their
+// contents, not with a length that they claim.
 #include "experiments/scenes/mesh/text.h"
 
 #include <fmt/format.h>
