@@ -230,7 +230,8 @@ Turn::Turn(std::atomic_flag& used, const char* name) : used_(used) {
     raise(name, "is in use by another thread or call", "make one for each thread", false);
 }
 
-ProgressStep&) { stop_point(); };
+Progress stopping_progress() {
+  return [](const ProgressStep&) { stop_point(); };
 }
 
 void raise(const std::string& where, const std::string& reason, const std::string& remedy,
