@@ -1,8 +1,7 @@
 // Distances of triangles and the points that realise them, in exact arithmetic.
 //
-// Semantics and preconditions as in verify/exact.h: closed convex hulls of the three corners with
-// the doubles as given, any finite ones, degenerate triangles included. A distance is the root of a
-// rational number, so it is kept as its square, and rounded once, to the nearest double.
+// Triangles are as in verify/exact.h. A distance is the root of a rational number, so it is kept as
+// its square, and rounded once, to the nearest double.
 #pragma once
 
 #include <array>
@@ -17,8 +16,8 @@
 
 namespace farcull {
 
-/// The exact square of a distance, a rational number >= 0. Copies share one value, which never
-/// changes.
+/// The exact square of a distance, a rational number >= 0. Copies share one value, which is
+/// constant.
 class SquaredDistance {
  public:
   SquaredDistance();  // 0
@@ -27,8 +26,7 @@ class SquaredDistance {
   /// The square of this distance. Precondition: finite, >= 0.
   static SquaredDistance of(double distance);
 
-  /// The distance: the root, rounded to the nearest double (to the even one of two equally near
-  /// ones); infinity beyond the largest double, as IEEE 754 rounds.
+  /// The distance: the root, rounded to nearest, ties to even; infinity beyond the largest double.
   double root() const;
   /// "numerator/denominator" in lowest terms, decimal.
   std::string text() const;
@@ -57,16 +55,15 @@ constexpr std::uint8_t number_of(const Feature& feature) {
   return static_cast<std::uint8_t>(3 * static_cast<int>(feature.kind) + feature.index);
 }
 
-/// Two closest points of two triangles. If several pairs of points are equally near, as for
-/// parallel edges or triangles that overlap, one is chosen by features, which here include their
-/// boundary: the point of a is on the least feature of a that has such a point; the point of b is
-/// on the least feature of b that has a partner of a point on that feature. This leaves one pair
-/// (verify/closest_points.cpp).
+/// Two closest points of two triangles. If several pairs of points are equally near (parallel
+/// edges, triangles that overlap), their features choose one pair (docs/proximity.md, "Two nearest
+/// points"). A feature includes its boundary here. The point of a is on the least feature of a that
+/// has such a point. The point of b is on the least feature of b that has a partner for the point
+/// of a.
 struct Closest {
   SquaredDistance squared;
   double distance = 0;              // squared.root()
-  std::array<Vec3, 2> points;       // the point of a and of b, each coordinate rounded once to the
-                                    // nearest double; never -0.0
+  std::array<Vec3, 2> points;       // of a and of b, each coordinate rounded once; never -0.0
   std::array<Feature, 2> features;  // the exact points lie on these
 };
 
@@ -88,7 +85,7 @@ struct NearestPair {
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
 // ---- two parallel planes between two triangles, exactly. They show of many other pairs of
-// triangles at once that these are no nearer.
+// triangles at once that none of these pairs is nearer.
 
 /// Let p and q be closest points of the triangles a and b, and w = q - p. One plane goes through p,
 /// the other one through q; both are perpendicular to w. The reach of a triangle is how far it

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "verify/closest_features.h"
 #include "verify/filter.h"
 #include "verify/filter_scalars.h"
-#include "verify/scaled.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -22,36 +19,18 @@ namespace farcull {
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
 // power of two that makes them integers; all that follows adds, subtracts and multiplies integers.
 //
-// Which answer. Triangles are convex, so the difference w = q - p is the same for all pairs (p, q)
-// of closest points, and the set of all p is P: the common part of a and of b moved by -w. Here
-// features include their boundary: an edge its ends, a face its edges. The answer is the first pair
-// of features, F of a and G of b, ordered by F and then by G, for which some p on F and q on G are
-// closest points. F and G have only one such pair of points:
-//  - F is a corner: p is that corner.
-//  - F is an edge: no corner of a is in P, or F would be that corner. Suppose that P contains more
-//    than one point of F. These points are a segment that does not reach the ends of F, so it ends
-//    where b (moved by -w) ends. If a corner of b is at such an end, G is a corner: one point. Else
-//    an edge of b crosses F there, and no corner of b is on F. Then G is an edge that is not
-//    parallel to F: one point.
-//  - F is the face: no point of a's edges is in P, so P is all of b, moved, or all of b's part in
-//    the plane of a. Then G is a corner of b; or b passes through the plane, and G is the first
-//    edge of b that does: one point.
-// Each point is inside its feature: on no corner or edge that comes earlier. The squared distance
-// from a point of the line or plane of F to a point of that of G is a polynomial of degree 2.
-// Inside F and G it has its minimum at only one pair of points, so it has no other minimum, and the
-// equations that find() of verify/closest_features.h solves have this one solution. For any other
-// features find() gives points of these features or nothing, so never nearer points. So the answer
-// is the first of the nearest points that find() gives for all pairs of features in order.
+// Which answer: the first pair of features, F of a and G of b ordered by F and then by G, that
+// holds two closest points. docs/proximity.md ("Two nearest points") proves that F and G hold only
+// one such pair, and that it is the pair that find() constructs. For other features find() gives
+// points of these features or nothing, so never nearer points. So the answer is the first of the
+// nearest points that find() gives for all pairs of features in order.
 //
-// Proof of a guess. Let p be a point of a, q one of b, and w = q - p not 0. They are closest points
-// iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. If this
-// holds, the triangles lie on opposite sides of the slab between the planes through p and q that
-// are perpendicular to w, so no points are nearer. If it does not hold, p comes nearer to q on the
-// way to some x, or q nearer to p on the way to some y. All closest points of a lie in the hull of
-// the corners x whose product above is 0, and those of b in the hull of such y. So a guess is the
-// answer if these corners are just those of F and of G, if p and q are inside F and G, and if F or
-// G is a corner or both are edges that are not parallel. Else the features of these corners are
-// tried in order, until two of them are as near.
+// Proof of a guess. By the theorem there, p and q with w = q - p are closest points iff w.(x - p)
+// <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. All closest points of a
+// lie in the hull of the corners x whose product is 0, and those of b in the hull of such y. So a
+// guess is the answer if these corners are just those of F and of G, if p and q are inside F and G,
+// and if F or G is a corner or both are edges that are not parallel. Else the features of these
+// corners are tried in order, until two of them are as near.
 //
 // Doubles only choose what to try, and leave out features that are provably not closest. So only
 // the final rounding affects the answer.

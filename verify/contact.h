@@ -46,15 +46,11 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
 
 // ---- kinds of contact ----
 //
-// Classifies how two triangles meet, as one of seven kinds, and finds the points that they have in
-// common.
-//
-// Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
-// triangle is the closed convex hull of its corners, so a degenerate one is the segment or the
-// point that it is. Every two triangles A and B have exactly one kind, the first that fits
-// (docs/record.md, "Kinds of contact"; the labels of docs/suite.md are the same). A segment has
-// two corners (its ends) and one edge (itself); a point has one corner (itself). Neighbours are
-// treated as any other triangles: the part that they share is a contact too.
+// How two triangles meet, as one of seven kinds, and the points that they have in common. Every two
+// triangles A and B have exactly one kind, the first that fits (docs/record.md, "Kinds of contact";
+// the labels of docs/suite.md are the same). A segment has two corners (its ends) and one edge
+// (itself); a point has one corner (itself). Neighbours are treated as any other triangles: the
+// part that they share is a contact too.
 
 enum class ContactKind : std::uint8_t {
   apart,         // no point in common: a pair that collides only by a clearance

@@ -10,7 +10,6 @@
 #include "verify/closest_features.h"
 #include "verify/contact_meeting.h"
 #include "verify/exact.h"
-#include "verify/scaled.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -104,9 +103,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. The new end has the
-/// value 0: it is the sum of both ends, each times the magnitude of the other's value, since the
-/// value is linear, and the value of each end is scaled by its w.
+/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. bound.value() is
+/// linear in (x, w), so it is 0 at the new end: the sum of both ends, each times the magnitude of
+/// the other end's value.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;

@@ -128,32 +128,34 @@ Meeting meeting_in_plane(const Signs& signs, int axis) {
   }
   out.dimension = std::min(out.count, 3) - 1;
   if (out.count == 1) out.kind = ContactKind::touch_vertex;
-  if (out.count > 1) {
+  if (out.count > 1)
     out.kind = held[0] == 3 && held[1] == 3 ? ContactKind::equal : ContactKind::coplanar;
-  }
   return out;
 }
 
 }  // namespace
 
 // If the planes of the triangles differ, let L be their common line. A triangle meets L in nothing,
-// in one corner, or in a segment. In the last case one corner is alone on its side of the other's
+// in one corner, or in a segment. For a segment, one corner is alone on its side of the other's
 // plane, and the two edges from this corner meet L at the ends of the segment; an end may be a
-// corner. If both triangles meet L in a segment, let p1 and p2 be the lone corners and q and r the
-// others, ordered so that p1 is on the positive side of (p2, q2, r2) and p2 on that of (p1, q1,
-// r1). L meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Take L as the x axis and the planes
-// as z = 0 and y = 0 (affine maps that keep orientations), p1 = (a, y1, 0), p2 = (b, 0, z2), k = y1
-// z2. Since q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
+// corner.
+//
+// If both triangles meet L in a segment, let p1 and p2 be the lone corners and q and r the others,
+// ordered so that p1 is on the positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). L
+// meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Affine maps that keep orientations make L
+// the x axis, the planes z = 0 and y = 0, p1 = (a, y1, 0) and p2 = (b, 0, z2). Let k = y1 z2. Since
+// q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
 //   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
 //   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
 //   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
-// For k > 0: u < v and t < s, so the segments have more than a point in common iff u < s and t < v:
-// iff the first two orientations are negative. They have one point in common iff u = s or t = v:
-// iff one of these is 0. For k < 0 all inequalities are reversed, with the same result.
-// The ends of a common segment are, for k > 0, the larger one of u and t, and the smaller one of v
-// and s; for k < 0 conversely. orientation(p1, q1, p2, r2) has the sign of -k (t - u): if it is
-// positive, the one end is u, else t. orientation(p1, r1, p2, q2) has the sign of -k (s - v): if it
-// is positive, the other end is s, else v.
+// Let k > 0; for k < 0 all inequalities are reversed, with the same result. Then u < v and t < s.
+// The segments have more than a point in common iff u < s and t < v: iff the first two orientations
+// are negative. They have one point in common iff u = s or t = v: iff one of these is 0.
+//
+// One end of a common segment is the larger one of u and t, the other end the smaller one of v and
+// s. orientation(p1, q1, p2, r2) has the sign of -k (t - u): if it is positive, the one end is u,
+// else t. orientation(p1, r1, p2, q2) has the sign of -k (s - v): if it is positive, the other end
+// is s, else v.
 std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool places) {
   const Signs signs(a, b);
   const std::optional<int> axis_a = signs.axis_of(0), axis_b = signs.axis_of(3);

@@ -8,7 +8,6 @@
 
 #include "verify/closest_features.h"
 #include "verify/contact_meeting.h"
-#include "verify/scaled.h"
 #include "verify/squared_distance.h"
 #include "verify/wide.h"
 

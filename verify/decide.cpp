@@ -101,17 +101,11 @@ PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corne
   return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
 }
 
-/// Scene::corners(), inline.
-inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {
-  const auto& [i, j, k] = scene.triangles[triangle];
-  return {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
-}
-
 /// The answer about a pair for which the filter of planes is `unknown`.
 PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool one_object,
                              const ExactQuestion& question) {
-  const Corners a = corners_of(scene, pair.a);
-  const Corners b = corners_of(scene, pair.b);
+  const Corners a = scene.corners(pair.a);
+  const Corners b = scene.corners(pair.b);
   if (one_object) {
     const unsigned equal = equal_corners(scene.triangles[pair.a], a, scene.triangles[pair.b], b);
     if (equal != 0) {
@@ -205,8 +199,8 @@ class BlockDecider {
       const TrianglePair& pair = pairs[i];
       prefetch(scene_, pairs[std::min(i + kAhead, pairs.size() - 1)].b);
       if (same_object_(pair)) {
-        const Corners a = corners_of(scene_, pair.a);
-        const Corners b = corners_of(scene_, pair.b);
+        const Corners a = scene_.corners(pair.a);
+        const Corners b = scene_.corners(pair.b);
         const unsigned equal =
             equal_corners(scene_.triangles[pair.a], a, scene_.triangles[pair.b], b);
         if (equal != 0) {
@@ -241,9 +235,8 @@ class BlockDecider {
 
 void require_pairs(const Scene& scene, std::span<const TrianglePair> candidates) {
   for (const TrianglePair& pair : candidates) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
+    if (std::max(pair.a, pair.b) >= scene.triangles.size())
       throw std::logic_error("decide: a candidate names a triangle that the scene lacks");
-    }
     if (pair.a == pair.b) throw std::logic_error("decide: a candidate of one triangle");
   }
 }

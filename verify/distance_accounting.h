@@ -25,9 +25,9 @@ namespace farcull {
 
 // ---- a question and its answers
 
-/// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects
-/// a <= b, or (with `all`) one of the pairs within the distance. With a == b both triangles are of
-/// one object, and neighbours (verify/exact.h) are left out.
+/// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects a
+/// <= b, or (with `all`) one of the pairs within the distance. If a == b, neighbours
+/// (verify/exact.h) are left out.
 struct ClaimedDistance {
   std::uint32_t a = 0, b = 0;  // objects
   TrianglePair pair;           // a triangle of a and one of b
@@ -57,9 +57,9 @@ struct DistanceQuestion {
 // ---- the accounting
 
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
-/// that fits, and is counted when it is decided. A pair is *nearer* if an answer should be nearer
-/// because of this pair, or if the pair should be an answer itself. A pair is *earlier* if it is as
-/// near as the answer about its objects but comes before that answer, so it should be the answer.
+/// that fits, and is counted when it is decided. A pair is *nearer* if it shows that an answer
+/// should be nearer, or if it should be an answer itself. It is *earlier* if it is as near as the
+/// answer about its objects but comes first, so it should be that answer.
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;        // by combinatorics
   std::uint64_t answers = 0;            // pairs that the answers name

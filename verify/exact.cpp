@@ -24,7 +24,6 @@
 #include <variant>
 
 #include "core/base/floating_point.h"
-#include "core/scene/scene.h"
 #include "verify/closest.h"
 #include "verify/within.h"
 
@@ -87,10 +86,10 @@ Hull rim_at(const Corners& part, const Vec3& v) {
   return hull(others[0], others[count - 1]);
 }
 
-/// Decides about neighbours with one shared position v. Both triangles are unions of parts that are
-/// convex, contain v and do not have v on their rims, unless a part is v itself. If two parts have
-/// a common point other than v, the point can be moved away from v until it leaves one of them.
-/// Where it leaves, it is on the rim of that part, so a rim meets the other part.
+/// Decides about neighbours with one shared position v. Both triangles are unions of convex parts
+/// that contain v. The rim of a part does not contain v, unless the part is v itself. If two parts
+/// have a common point other than v, this point can be moved away from v until it leaves one part.
+/// There it is on the rim of that part, so this rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {

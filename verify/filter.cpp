@@ -9,7 +9,6 @@
 #include "verify/filter.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -211,9 +210,8 @@ void filter_batches(const Scene& scene, std::span<const TrianglePair> pairs, dou
       const AgainstPlanes planes = against_planes<FilterBounds>(a, b, clearance);
       const int lanes = std::min(kWide, count - from);
       const unsigned apart = bits_of(planes.apart);
-      for (int i = 0; i < lanes; ++i) {
+      for (int i = 0; i < lanes; ++i)
         answers[begin + from + i] = (apart >> i & 1) ? Triage::no : Triage::unknown;
-      }
       unsigned crossing = bits_of(planes.crossing) & ((1u << lanes) - 1);
       if (crossing == 0) continue;
       const CornersAbove above(planes);

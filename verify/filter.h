@@ -17,8 +17,7 @@
 
 namespace farcull {
 
-/// The corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the
-/// cache, since successive pairs mostly have the same a.
+/// Corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the cache.
 inline constexpr std::size_t kAhead = 8;
 
 /// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks at their planes

@@ -55,33 +55,24 @@ namespace farcull::filters {
 
 // ---- against planes ----
 //
-// The bounds follow Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3;
-// Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, bounds the same determinant.
-// u = 2^-53; without underflow and overflow every operation multiplies its exact result by some
-// 1 + d, |d| <= u.
+// Gappa proves the constants (docs/proofs.md, `filter.*`); these are the reasons. The bounds follow
+// Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3. Shewchuk, Adaptive
+// Precision Floating-Point Arithmetic, 1997, bounds the same determinant. u = 2^-53.
 //
-// Side of a plane. With e = p - o, f = q - o, w = x - o, the determinant D is the sum over k of
-// n_k w_k, n = e x f: six terms e_i f_j w_k. A term meets at most 8 roundings: one in each of its
-// three differences, e_i f_j, the difference in n_k, n_k w_k, and two sums. So the computed D is
-// off by at most ((1 + u)^8 - 1) P, where P is the sum of the six exact |e_i f_j w_k|. This
-// permanent P is computed by the same operations on magnitudes, with at most 8 roundings a term,
-// hence P <= (1 - u)^-8 times the computed one. Larger |w_k| only make it larger. The bound itself
-// takes two more roundings. ((1 + u)^8 - 1) (1 - u)^-10 < 8 u + 150 u^2 < 9 u.
+// Side of a plane. With e = p - o, f = q - o and w = x - o, the determinant is a sum of six terms
+// e_i f_j w_k. A term meets at most 8 roundings: three differences, e_i f_j, the difference in n_k,
+// n_k w_k, and two sums. So the computed determinant is off by at most ((1 + u)^8 - 1) P, where the
+// permanent P is the sum of the exact |e_i f_j w_k|. P is computed by the same operations on
+// magnitudes. Larger |w_k| only make it larger. With two more roundings for the bound, 9 u suffice.
 //
-// Product of two normals n.m. The terms of either normal meet 4 roundings each, the product and
-// sums 3 more: 11 in all. The bound meets 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below
-// 12 u.
-//
-// Projection of w = x - o onto a given direction d (its doubles count as exact, however they were
-// found). One difference, one product and two sums make 4 roundings, and the bound meets 6 more:
-// below 5 u. The 9 u for sides of planes cover this.
+// Product of two normals: 11 roundings, and 13 for the bound; 12 u suffice. Projection of w = x - o
+// onto a given direction, whose doubles count as exact: 4 roundings, and 6 for the bound, which the
+// 9 u for sides of planes cover.
 //
 // Underflow. Differences and sums of doubles are exact if they are subnormal. A product is off by
-// at most 2^-1075 more. D has two such products in each n_k, times w_k, and one in each n_k w_k:
-// with all later roundings at most 2^-1073 (|w|_1 + 2). n.m is off by 2^-1073 (|n|_1 + |m|_1 + 2),
-// also with |n|_1 as computed from magnitudes, and a projection by 2^-1073. The permanent is off
-// likewise, times 12 u. `absolute` is more than 2^70 times all of this, so that it and its products
-// with numbers of at least 1 are normal numbers, on which every processor is fast.
+// at most 2^-1075 more; all later roundings make that at most 2^-1073 (|w|_1 + 2) for the
+// determinant, and likewise for the others. `absolute` is more than 2^70 times that, so that it and
+// its products with numbers of at least 1 are normal numbers, on which every processor is fast.
 //
 // Overflow. For every operation of D the permanent has the same operation on magnitudes, whose
 // result is at least as large, since rounding is monotone. So if anything overflows, the bound is
@@ -198,24 +189,22 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 // Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
 // 5.1.5 and 5.1.9). The points can prove that the triangles are near, and the direction between the
 // points can prove that they are not. If neither is proved, the answer is `unknown`; so a wrong
-// guess never makes a wrong answer.
+// guess never makes a wrong answer. Gappa proves the constants (docs/proofs.md, `distance.*`);
+// these are the reasons.
 //
-// All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by u |x| at
-// most, u = 2^-53. R is the largest |coordinate| of these differences.
+// All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by at most u
+// |x|. R is the largest |coordinate| of these differences.
 //
-// Near. p is the sum of l_i x_i with weights l_i >= 0 that sum to 1 up to 4 u (two are computed,
-// each at most 1; the third is 1 minus the others, or 0 if rounding makes that negative). q
-// likewise. Per axis, p is off from a point of the triangle by less than (1 + 4 u) times u R
-// (differences) + 3 u R (products and sums) + 4 u R (weights, compared with those divided by their
-// sum) < 9 u R, and so is q. The difference of p and q has one more rounding, of 2 u R: it is off
-// by less than 20.1 u R per axis and 35 u R in length. The computed length is below 4 R and off by
-// less than 3 u of itself, and two sums follow: 20 u R. In all 55 u R; `point` is 64 u.
+// Near. p is a sum of x_i with weights >= 0 that sum to 1 up to 4 u: two weights are computed, and
+// the third is 1 minus the others, or 0 if rounding makes that negative. Per axis, p is off from a
+// point of the triangle by less than 9 u R, and so is q. Their difference is off by less than 35 u
+// R in length. With the roundings of its length and two sums that is 55 u R in all; `point` is 64
+// u.
 //
-// Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. A computed d.x is
-// off by less than 5 u |d|.|x| (see "Projection"), and the difference of two of them by 2 u |d|.|x|
-// more: 12 u M in all, where M is the product of the magnitudes of d with the largest |x| per axis.
-// `gap` is 16 u. The computed length of d, times the clearance, is off by less than 4 u of itself,
-// which the factor 1 + 8 u covers.
+// Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. The computed
+// difference is off by less than 12 u M, where M is the product of the magnitudes of d with the
+// largest |x| per axis. `gap` is 16 u. The computed length of d, times the clearance, is off by
+// less than 4 u of itself, which the factor 1 + 8 u covers.
 //
 // Underflow: products are off by at most 2^-1075, far below `absolute`. The computed length of d is
 // accurate only if its square is at least 2^-900; the proof of "near" takes a shorter length as
@@ -233,8 +222,7 @@ struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
   int of_a = kCorner, of_b = kCorner;  // what the points lie on
-  double s = 0, t = 0;  // on edges: how far along that of a and that of b; on a face: the weights
-                        // of its corners 1 and 2
+  double s = 0, t = 0;  // on edges: how far along each; on a face: the weights of corners 1 and 2
 
   void offer(const Vec3& d, int on_a, int on_b, double along_a, double along_b) {
     const double square = d.squaredNorm();
@@ -304,9 +292,7 @@ inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
     t[i] = b[i] - a[0];
   }
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      offer_segments(s, i, t, j, closest);
-    }
+    for (int j = 0; j < 3; ++j) offer_segments(s, i, t, j, closest);
   }
   for (int i = 0; i < 3; ++i) {
     offer_face(s, i, t, 1, closest);

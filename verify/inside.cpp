@@ -14,7 +14,6 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <tuple>
 #include <vector>
 
 #include "core/base/floating_point.h"
@@ -83,10 +82,10 @@ struct Crossings {
   bool odd = false;          // true if the number of crossings is odd
 };
 
-/// The crossings of a ray. Empty if one was unclear. If the ray is along the first axis, boxes show
-/// that it misses most triangles. Triangles that are segments or points are left out: no ray in
-/// general position crosses them, and if x is on the line of one, all signs are 0 for every
-/// direction.
+/// The crossings of a ray; empty if one was unclear. If the ray is along the first axis, boxes show
+/// that it misses most triangles. Triangles that are segments or points are left out, since no ray
+/// in general position crosses them. (If x is on the line of such a triangle, all signs are 0 for
+/// every direction.)
 std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
                                    const Vec3& d, bool first_axis) {
   Crossings out;
@@ -110,10 +109,10 @@ std::optional<Crossings> crossings(const Scene& scene, const Object& object, con
 
 Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
   if (const auto answer = crossings(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
-  // The unclear directions: for each edge of a triangle that is not degenerate, they lie in a
-  // plane. This holds also if x is in the plane of the triangle, but not on it: for all other
-  // directions two of the signs are opposite. With 2^52 values per axis each such plane holds at
-  // most 2^-52 of all directions, so with 2^34 edges at most one draw in 2^18 is unclear.
+  // For each edge of a triangle that is not degenerate, the unclear directions lie in a plane (also
+  // if x is in the plane of the triangle, but not on it: for all other directions two of the signs
+  // are opposite). With 2^52 values per axis each such plane holds at most 2^-52 of all directions.
+  // So with 2^34 edges at most one draw in 2^18 is unclear.
   RandomNumbers random(1);
   constexpr int kDraws = 16;
   for (int k = 0; k < kDraws; ++k) {
@@ -123,14 +122,6 @@ Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
   }
   throw std::logic_error("inside: every ray meets an edge");
 }
-
-}  // namespace
-
-bool is_closed(const Scene& scene, std::uint32_t object) {
-  return surface_of(scene, object) != Surface::open;
-}
-
-namespace {
 
 using Place = std::array<double, 3>;
 using Places = std::array<Place, 3>;
@@ -153,11 +144,11 @@ std::vector<Places> places_of(const Scene& scene, const Object& o) {
 struct Edge {
   std::array<Place, 2> ends;   // the lower one first
   bool forward = false;        // from the lower end to the upper one
-  std::uint32_t triangle = 0;  // that has it
+  std::uint32_t triangle = 0;  // the triangle of the edge
 };
 
 /// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
-/// returns false; returns whether none did.
+/// returns false. Returns true if no call did.
 template <class Group>
 bool each_edge(std::span<const Edge> edges, const Group& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
@@ -197,9 +188,9 @@ Surface surface_of(const std::vector<Edge>& edges) {
 bool may_be_folded(const Corners& a, const Corners& b) {
   const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
   const double of_a = e.norm() * f.norm(), of_b = e.norm() * g.norm();
-  // Negative if the triangles lie on different sides of the edge. It is off by less than 30 u of_a
-  // of_b, and by underflow. Products of two lengths above 1e-280 lose far less than 1e-12 of
-  // themselves, the product of four loses less than 1e-290.
+  // `sides` is negative if the triangles lie on different sides of the edge. Its error is less than
+  // 30 u of_a of_b, and underflow. Products of two lengths above 1e-280 lose far less than 1e-12 of
+  // themselves by underflow, and the product of four loses less than 1e-290.
   const double sides = e.cross(f).dot(e.cross(g));
   return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
@@ -229,6 +220,10 @@ bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>
 }
 
 }  // namespace
+
+bool is_closed(const Scene& scene, std::uint32_t object) {
+  return surface_of(scene, object) != Surface::open;
+}
 
 Surface surface_of(const Scene& scene, std::uint32_t object) {
   return surface_of(edges_of(places_of(scene, object_of(scene, object, "surface_of"))));

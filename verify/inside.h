@@ -1,12 +1,12 @@
 // Whether one object lies inside another, exactly.
 //
-// Semantics: a mesh is *closed* if every edge, by the positions of its ends, belongs to an even
-// number of its triangles; triangles with two equal corners do not count. It is *oriented* if its
-// triangles also pass each edge equally often in both directions. The *winding number* of a point
-// off an oriented mesh is the number of times that a ray from the point crosses triangles from
-// behind, less the number of times from the front. The point is *inside* if this number is not 0.
-// So it is inside two shells that overlap, and outside in a cavity whose shell is turned inside
-// out. For a closed mesh that is not oriented, the point is inside if the number of crossings is
+// A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
+// triangles; triangles with two equal corners do not count. It is *oriented* if its triangles also
+// pass each edge equally often in both directions. The *winding number* of a point off an oriented
+// mesh is the number of times that a ray from the point crosses triangles from behind, less the
+// number of times from the front. The point is *inside* if this number is not 0. So a point in two
+// shells that overlap is inside, and a point in a cavity whose shell is turned inside out is
+// outside. For a closed mesh that is not oriented, a point is inside if the number of crossings is
 // odd. Every ray that meets no edge gives the same answer.
 #pragma once
 

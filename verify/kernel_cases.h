@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <vector>
 
 #include "core/canvas/canvas.h"
 #include "verify/rational.h"

@@ -1,5 +1,6 @@
-// Finds contacts: of near triangles by the filter of distances (verify/filter_scalars.h), which
-// keeps the weights of its points; of crossing ones by an edge through a face; of the rest exactly.
+// Finds contacts. The filter of distances (verify/filter_scalars.h) keeps the weights of its
+// points, which give the contact of near triangles; an edge through a face gives that of crossing
+// ones. Exact arithmetic decides the rest.
 #include "verify/near_contact.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 
 #include "verify/closest_features.h"
 #include "verify/filter_scalars.h"
-#include "verify/scaled.h"
 #include "verify/squared_distance.h"
 
 namespace farcull {
@@ -19,24 +19,26 @@ using Integer = mpz_class;
 
 // ---- in doubles
 //
-// Distance. distance_bounds() proves lower <= D <= upper of the exact distance D, from the computed
-// length L of the difference of two points: upper is L plus a bound, and lower is at most L minus a
-// bound. So |L - D| <= upper - lower, and where this is at most 2^-33 lower, L is off by 2^-32 D at
-// most; the factor 2 covers the roundings of that comparison.
+// Distance. distance_bounds() gives two bounds of the exact distance D. The length L of the
+// difference of two computed points lies between them. They are accepted if they differ by at most
+// 2^-33 of the lower one, so L is off by at most 2^-32 D. The factor 2 covers the roundings of that
+// comparison.
 //
-// Normal. Let w* be the exact difference of nearest points, |w*| = D, and x that of the exact
-// points with the computed weights (divided by their sum). The computed difference is off from x by
-// at most upper - lower <= 2^-33 D, so |x| <= D (1 + 2^-32). w* is the point of a convex set, b
-// minus a, that is nearest to 0, and x is in the set: so (x - w*) . w* >= 0, and |x - w*|^2 <=
-// |x|^2 - |w*|^2 < 2^-30.9 D^2. With the error of x the computed difference is off from w* by less
-// than 2^-15.4 D. Two vectors that differ by e D, one of them of length D, differ by an angle of at
-// most asin(e), so the unit vectors differ by less than 2^-15.3, and by some u more for the
-// roundings of the quotient.
+// Normal. Let w be the exact difference of nearest points, so |w| = D. Let x be the exact
+// difference of the points that have the computed weights, divided by their sum.
+// - The computed difference is off from x by at most the difference of the bounds, so
+//   |x| <= D (1 + 2^-32).
+// - All differences of a point of b and a point of a form a convex set. w is its point nearest to
+//   0, and x is in it, so (x - w) . w >= 0. Hence |x - w|^2 <= |x|^2 - |w|^2 < 2^-30.9 D^2.
+// - Together the computed difference is off from w by less than 2^-15.4 D. So the angle between
+//   them has a sine below 2^-15.4, and the unit vectors differ by less than 2^-15.3. The roundings
+//   of the quotient add a few u.
 //
-// Points. With weights l_1, l_2 and corners c_0 to c_2 the point is c_0 + ((c_1 - c_0) l_1 +
-// (c_2 - c_0) l_2). The differences are off by u R, products and sums by 3 u R more, for weights
-// that sum to at most 1 + u. If rounding makes the weight of c_0 negative, it is set to 0, which
-// moves the point by 2 u R. In all less than 8 u R; then comes the sum with c_0.
+// Points. With weights l_1, l_2 and corners c_0 to c_2 the point is
+// c_0 + ((c_1 - c_0) l_1 + (c_2 - c_0) l_2). The differences are off by u R. Products and sums add
+// 3 u R, as the weights sum to at most 1 + u. If rounding makes the weight of c_0 negative, it is
+// set to 0, which moves the point by 2 u R. All this is below 8 u R. The sum with c_0 is rounded
+// last.
 
 /// What the point of these weights lies on.
 Feature feature_of(const Vec3& weights) {

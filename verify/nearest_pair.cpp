@@ -1,4 +1,16 @@
-// The nearest of many pairs of triangles.
+// Finds the nearest of many pairs of triangles. Bounds in doubles leave the pairs that can be the
+// nearest one; the squared distances of these are compared exactly.
+//
+// Most of the pairs that are left have triangles around one corner or edge, and the same two
+// closest points. SamePoints recognises such a pair. Let F and G be the features of closest points
+// of a pair that was solved, and w the difference of these points. Another pair has points as near
+// if its triangles have the corners of F and of G. It has none nearer if w . (x - p) < 0 for the
+// other corners x of the triangle with F, and w . (y - q) > 0 for the other corners y of the
+// triangle with G (closest_points.cpp, "Proof of a guess"). Here p may be any corner of F, and q
+// any corner of G, since w is perpendicular to both features.
+//
+// Doubles decide the signs if they are beyond the rounding errors: kTie and the constants after it
+// (verify/rounding.h) bound these errors, and docs/proofs.md has the proofs (`distance.tie`).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,24 +27,6 @@
 #include "verify/rounding.h"
 
 namespace farcull {
-
-// Finds the nearest of many pairs. Bounds in doubles leave the pairs that can be the nearest one;
-// the squared distances of these are compared exactly.
-//
-// Mostly these pairs are of triangles around one corner or edge, and have the same two closest
-// points. Let F and G be the features of closest points of a pair that was solved, and w the
-// difference of these points. If the triangles of another pair have the corners of F and of G, the
-// pair has points as near. It has no nearer points if w . (x - p) < 0 for the other corners x of
-// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G
-// (closest_points.cpp, "Proof of a guess"). Here p and q may be any corners of F and G, since w is
-// perpendicular to both features.
-//
-// Doubles decide this if rounding leaves no doubt. The computed w is the difference of two rounded
-// points: off by u (|p| + |q|) and by u |w| more per axis, u = 2^-53. x - p is off by u of itself.
-// With products and sums the computed product is off by less than 5.1 u |w|.|x - p| +
-// 1.1 u (|p| + |q|).|x - p|; kTie and kTiePoints are larger, and cover the roundings of these
-// bounds, too. A subnormal coordinate is off by 2^-1075 instead, which kTieSubnormal covers.
-// kTieAbsolute covers the underflow of products.
 
 namespace {
 

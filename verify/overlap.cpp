@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -12,7 +11,6 @@
 #include "core/base/random.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
-#include "verify/inside.h"
 #include "verify/rational.h"
 
 namespace farcull {
@@ -123,8 +121,8 @@ void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& othe
   }
 }
 
-/// A point inside the polygon, by random weights of its corners. Only by a rare chance does it lie
-/// on a given line.
+/// A point inside the polygon: its corners get random weights, so the point hardly ever lies on a
+/// given line.
 Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   Q3 sum = {0, 0, 0};
   Q total = 0;
@@ -149,7 +147,8 @@ struct Sides {
 std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
                               const Q3& p, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const double pu = p[u].get_d(), pv = p[v].get_d();  // cut off, so the next doubles enclose them
+  // get_d() cuts off, so the exact coordinate is between these doubles and the next ones.
+  const double pu = p[u].get_d(), pv = p[v].get_d();
   const auto below = [](double x) { return std::nextafter(x, -HUGE_VAL); };
   const auto above = [](double x) { return std::nextafter(x, HUGE_VAL); };
   const double u_lo = below(pu), u_hi = above(pu), v_lo = below(pv), v_hi = above(pv);
@@ -277,7 +276,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // the part connected with it may be inside as well
+        out = Overlap::unknown;  // what is connected with the triangle may be inside as well
       return out;
     }
     return Overlap::unknown;

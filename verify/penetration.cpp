@@ -14,7 +14,6 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
-#include "verify/separates.h"
 
 namespace farcull {
 namespace {
@@ -173,17 +172,17 @@ struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
     double distance;  // the translation t is held if normal . t < distance for all sides
-    double error;     // of normal . t - distance, relative to the magnitudes
+    double error;     // largest error of normal . t - distance, relative to the magnitudes
     Vec3 support;     // |normal . axis| for each axis of boxes
   };
   std::vector<Side> sides;
   double largest = 0;  // |coordinate| of a corner
 };
 
-// A component of a normal e x f has 4 roundings, relative to products of components of e and f.
-// Making its length 1 divides this error by |e x f|; `thin` is this part. Products with a
-// translation and a corner, the corner's own rounding, sums and axes are 24 more, relative to 1. So
-// 40 covers both.
+// Roundings. A component of a normal e x f has 4, relative to products of components of e and f.
+// When the normal is divided by its length, so is this error: `thin` is the quotient. Products with
+// a translation and with a corner, the corner's own rounding, sums and axes have 24 more, relative
+// to 1. The factor 40 covers all of them.
 Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   Cover out;
   const Points& at = polytope.corners();
@@ -280,8 +279,8 @@ class Search {
     return true;
   }
 
-  /// Divides the ball of translations below the upper bound until all of it that is nearer than
-  /// the lower bound is settled.
+  /// Divides the ball of translations shorter than the upper bound into parts, until all parts that
+  /// are nearer than the lower bound are settled.
   void search() {
     constexpr double kWork = 2e6;  // sides of covers that are examined
     constexpr double kClose = 0.98;
@@ -313,8 +312,8 @@ class Search {
 
  private:
   struct Part {
-    double distance;    // of the origin
-    Vec3 middle, half;  // along the axes
+    double distance;    // from the origin to its nearest point
+    Vec3 middle, half;  // of its box, along the axes
     bool operator>(const Part& other) const { return distance > other.distance; }
   };
 
@@ -418,7 +417,8 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   std::vector<Deep> found;
   for (std::size_t k = 0; k < starts.size(); k += starts.size() / kStarts + 1) {
     for (const double part : {-0.5, -0.25, -0.05, 0.05, 0.25, 0.5}) {
-      // Moved along the translation alone, a common point of the surfaces may stay on one surface.
+      // The point is also moved towards the middle, since a common point of the surfaces that is
+      // moved along the translation alone may stay on one surface.
       const Vec3 p = starts[k] + part * translation + std::abs(part) * (middle - starts[k]);
       if (a.has(p) && b.has(p)) found.push_back(deep(p));
     }
@@ -443,8 +443,8 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
 }  // namespace
 
 // True if products of four lengths are normal numbers, for lengths down to 2^-50 of the object's
-// extent. Squares of cross products are such, and their roots make normals of length 1. If false,
-// the depth has no lower bound.
+// extent. Squares of cross products are such products, and their roots make normals of length 1. If
+// false, no lower bound of the depth is computed.
 bool has_normal_products(const ClosedObject& solid) {
   const Vec3 extent = solid.box().hi - solid.box().lo;
   return extent.maxCoeff() > 0x1p-200 && solid.largest() < 0x1p200;
@@ -463,8 +463,8 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   if (limit && out.hi <= limit->most) return out;
   const Points seeds = out.hi < kInf ? deep_points(a, b, starts, out.translation) : Points();
   if (limit) {
-    // A point inside both that is farther than `most` from both surfaces stays a common point after
-    // each translation by at most `most`. Then none is tried. This only saves time.
+    // If a point inside both is farther than `most` from both surfaces, it is a common point after
+    // each translation by at most `most`. Then no translation is tried, which only saves time.
     const auto deeper = [&](const ClosedObject& solid, const Vec3& p) {
       return solid.has(p) && (solid.nearest(p) - p).norm() > limit->most;
     };

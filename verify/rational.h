@@ -6,7 +6,6 @@
 #include <gmpxx.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

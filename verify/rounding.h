@@ -8,18 +8,19 @@ namespace farcull {
 
 enum class Triage : std::uint8_t { no, yes, unknown };
 
-/// The proved bounds, derived in filter_scalars.h. The filters take them as a type, so that tests
-/// can show that smaller bounds give wrong answers.
+/// The proved bounds (docs/proofs.md). A type, so that tests can show that smaller bounds give
+/// wrong answers.
 struct FilterBounds {
-  static constexpr double side =
-      9 * 0x1p-53;  // of a determinant, relative to its permanent; of a projection
-  static constexpr double normals = 12 * 0x1p-53;  // of the product of two normals
-  static constexpr double point =
-      64 * 0x1p-53;  // of a constructed difference of points, relative to their extent
-  static constexpr double gap =
-      16 * 0x1p-53;  // of a gap along a direction, relative to the projected magnitudes
-  static constexpr double absolute =
-      0x1p-1000;  // of underflow; times 1 + the sum of the last factors
+  /// Error of a determinant, relative to its permanent, and of a projection.
+  static constexpr double side = 9 * 0x1p-53;
+  /// Error of the product of two normals.
+  static constexpr double normals = 12 * 0x1p-53;
+  /// Error of the difference of two constructed points, relative to their extent.
+  static constexpr double point = 64 * 0x1p-53;
+  /// Error of a gap along a direction, relative to the projected magnitudes.
+  static constexpr double gap = 16 * 0x1p-53;
+  /// Error by underflow; times 1 + the sum of the last factors.
+  static constexpr double absolute = 0x1p-1000;
 };
 
 /// For an upper bound of the length of a normal: the error of the length, relative to the sum of
@@ -31,12 +32,11 @@ constexpr double kLeastSquare = 0x1p-900;
 /// Rounding error of a clearance times a length.
 constexpr double kNeededRounding = 0x1p-50;
 
-// ---- bounds for SamePoints (verify/nearest_pair.cpp derives them) ----
+// ---- bounds for SamePoints (verify/nearest_pair.cpp)
 
 /// Error of a product w . (x - p), relative to the magnitudes of its terms.
 constexpr double kTie = 8 * 0x1p-53;
-/// Error that the rounding of the two points of w adds, relative to the magnitudes of their
-/// coordinates.
+/// Error from the rounding of the two points of w, relative to the magnitudes of their coordinates.
 constexpr double kTiePoints = 2 * 0x1p-53;
 /// The same error if a coordinate is subnormal.
 constexpr double kTieSubnormal = 0x1p-1070;

@@ -113,11 +113,11 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
 namespace farcull::minkowski_line {
 
 // A line along z and a triangle fattened by a ball, as the floats of a Solid define it
-// (offsets/minkowski.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d =
-// c - m in the image, c the place of the line; p a point of the triangle; root =
-// sqrt(r^2 - |d - p.xy|^2). The ball about p cuts the line in the chord from m.z + p.z - root to
-// m.z + p.z + root. The solid's interval is the hull of all chords, so a kernel's answer has to
-// contain the chord of any p. Rationals decide this wherever long doubles leave a doubt.
+// (offsets/minkowski.glsl). Let m be the solid's centre, and v0, v1, v2 its corners relative to m.
+// Let d = c - m in the image, where the line is at c. The ball about a point p of the triangle cuts
+// the line in the chord from m.z + p.z - root to m.z + p.z + root, root = sqrt(r^2 - |d - p.xy|^2).
+// The solid's interval is the hull of all chords, so a kernel's answer has to contain the chord of
+// every p. Rationals decide this wherever long doubles leave a doubt.
 
 using rational::Q;
 using Real = long double;
@@ -166,9 +166,8 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// The error bound 2^-56 holds since p, its difference from the line and the squares take a dozen
-  /// operations that err by 2^-64 each, relative to the largest coordinates (flat: in the image,
-  /// deep: along the depth).
+  /// The chord of a point. The error bound is 2^-56 of the largest coordinates (flat: in the image,
+  /// deep: along the depth), since a dozen operations err by 2^-64 of them each.
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -176,7 +175,8 @@ class Line {
     const Real x = p[0] - dx_, y = p[1] - dy_;
     Chord out{};
     out.square = r_ * r_ - x * x - y * y;
-    // |x| and |y| are at most r near a chord's ends, and x and y are off by at most 2^-56 flat.
+    // Let x and y be the differences from the line in the image. Where `square` is near 0, they are
+    // at most r. Their errors are at most 2^-56 of `flat`.
     const Real e = 0x1p-56L * flat_;
     out.no_chord = 8 * e * (r_ + e) + 0x1p-56L * r_ * r_ + 0x1p-300L;
     const Real root = std::sqrt(std::max<Real>(out.square, 0));

@@ -10,8 +10,6 @@
 #include <cmath>
 #include <utility>
 
-#include "verify/scaled.h"
-
 namespace farcull {
 namespace {
 

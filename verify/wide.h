@@ -3,21 +3,21 @@
 // Precision, 1971; Ziv, Fast Evaluation of Elementary Mathematical Functions with Correctly Rounded
 // Last Bit, 1991). For verify/contact_points.cpp alone.
 //
-// u = 2^-53. Products, quotients and sums are rounded to nearest: off by at most u times the
-// result. exact_sum() and exact_product() also give the part that rounding cuts off, so they lose
-// nothing. Where no such part is left out, as for coordinates of few digits, the error is 0.
+// u = 2^-53. Products, quotients and sums are rounded to nearest, so each is off by at most u times
+// the result. exact_sum() and exact_product() also give the part that rounding cuts off. If no such
+// part is dropped, as for coordinates of few digits, the error is 0.
 //
-// A bound is a sum of terms >= 0 that meets at most 12 roundings. So the computed one is at least
-// (1 - u)^12 times the exact one, and Bounds::factor makes up for that. It also makes up for
-// a factor 1 + u, since |hi + lo| <= (1 + u) |hi|.
+// A bound is a sum of terms >= 0 that goes through at most 12 roundings. So the computed bound is
+// at least (1 - u)^12 times the exact one. Bounds::factor makes up for this, and for a factor 1 +
+// u, since |hi + lo| <= (1 + u) |hi|.
 //
-// Underflow. Precondition: each number that one begins with is the sum of two doubles, each 0 or of
-// a magnitude in [2^-100, 2^100]; a value is a product of at most four of these numbers, or a sum
-// of such products. Sums and differences are multiples of 2^-152, and products of four are
-// multiples of 2^-608; no rounding changes that. An error above 0 is u times such a product at
-// least, so nothing underflows before a division. A quotient of values of four and of three factors
-// is 0 or above 2^-916. It may underflow in its low part and in its bound, by 2^-1070 in all: the
-// term kUnderflow covers this.
+// Underflow. Precondition: each number at the start is the sum of two doubles, each 0 or of a
+// magnitude in [2^-100, 2^100]. Later values are products of at most four of these numbers, or sums
+// of such products.
+// - Before a division nothing underflows: differences are multiples of 2^-152 and products of four
+// are multiples of 2^-608, also when rounded. An error above 0 is at least u times such a product.
+// - A quotient of a product of four and one of three is 0 or above 2^-916. Its low part and its
+// bound may underflow, by 2^-1070 in all. The term kUnderflow covers this.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@
 
 namespace farcull::wide {
 
-/// The last factor of each bound. It is a type, so that a test can show that smaller bounds give
-/// wrong answers.
+/// The last factor of each bound. A type, so that tests can show that smaller bounds give wrong
+/// answers.
 struct Bounds {
   static constexpr double factor = 1 + 0x1p-48;
 };
@@ -55,7 +55,7 @@ inline Parts exact_product(double x, double y) {
   return {product, ((x_hi * y_hi - product) + x_hi * y_lo + x_lo * y_hi) + x_lo * y_lo};
 }
 
-/// The number differs from hi + lo by `error` at most; hi is the double nearest to hi + lo.
+/// A number that differs from hi + lo by at most `error`; hi is the double nearest to hi + lo.
 template <class B>
 struct Number {
   double hi = 0, lo = 0, error = 0;
@@ -93,8 +93,8 @@ Number<B> operator*(const Number<B>& a, const Number<B>& b) {
               std::abs(a.lo * b.lo) + kUnit * rounding};
 }
 
-/// Let q be the first quotient and r = a - q b. Then a / b - q = r / b, and the second quotient is
-/// r.hi / b.hi. With b = b.hi + d, the two differ by (r - r.hi - d r.hi / b.hi) / b.
+/// Let q be the first quotient and r = a - q b. Then a / b = q + r / b. The second quotient, r.hi /
+/// b.hi, is off from r / b by (r - r.hi - d r.hi / b.hi) / b, where d = b - b.hi.
 template <class B>
 Number<B> operator/(const Number<B>& a, const Number<B>& b) {
   const double first = a.hi / b.hi;
@@ -106,9 +106,9 @@ Number<B> operator/(const Number<B>& a, const Number<B>& b) {
           2 * left / size + kUnit * std::abs(second) + kUnderflow * std::abs(first)};
 }
 
-/// The double nearest to the number, never -0.0; empty if two are possible. Rounding is monotone,
-/// so all numbers between two that are rounded to hi are rounded to hi. The sums with `error` round
-/// as well: by u |lo| + u error at most, which the larger error covers.
+/// The double nearest to the number, never -0.0; empty if two are possible. Rounding is monotone:
+/// if both ends of the interval of the number are rounded to hi, so is the number. The sums with
+/// `error` are rounded, too, by at most u |lo| + u error; the larger error covers this.
 template <class B>
 std::optional<double> nearest(const Number<B>& x) {
   const double error = x.error * B::factor + 4 * kUnit * std::abs(x.lo);

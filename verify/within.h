@@ -1,8 +1,6 @@
 // Is the distance of two triangles at most a clearance? Filters in doubles answer first; exact
-// arithmetic answers if they leave a doubt. For the sources of verify/exact.h alone.
-//
-// Semantics and preconditions as in verify/exact.h: closed convex hulls of the three corners with
-// the doubles as given, any finite ones, degenerate triangles included.
+// arithmetic answers if they leave a doubt. Triangles are as in verify/exact.h. For the sources of
+// verify/exact.h alone.
 #pragma once
 
 #include <array>
@@ -17,9 +15,8 @@ namespace farcull {
 
 /// Throws std::logic_error naming `where` unless the clearance is finite and not negative.
 inline void require_clearance(const char* where, double clearance) {
-  if (!(clearance >= 0 && std::isfinite(clearance))) {
+  if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error(std::string(where) + ": a clearance must be finite and not negative");
-  }
 }
 
 /// The answer by exact arithmetic alone.

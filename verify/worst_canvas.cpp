@@ -53,10 +53,10 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
   return true;
 }
 
-// The same for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x - a.x) in floats.
-// Each operation is off by half a unit in its last place to the worse side. A product has three
-// roundings, one in each factor and one of its own; the comparison has none. The doubles here are
-// off by only 2^-53 of these products.
+// As surely_inside(), for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x - a.x)
+// in floats. Each operation is off by half a unit in its last place, to the worse side: one for
+// each factor, and one for the product. The comparison is exact. The doubles here are off by only
+// 2^-53 of these products.
 bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
   constexpr double kHalfUnit = 0x1p-24;
   const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
@@ -101,12 +101,12 @@ float WorstCanvas::held(float z) const {
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// The value for a depth in the program that stores or the one that asks. Each rounding goes up or
-// down, to the ends of the ranges that glsl_worst computes.
+// The value for a depth in the program that stores, or in the program that asks. Each rounding goes
+// up or down, to an end of the range that glsl_worst computes.
 float WorstCanvas::held(float z, Verb verb) const {
   if (options_.exact_samples) return held(z);
   const bool ask = verb == Verb::ask;
-  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // each choice takes one bit: 1 is down
+  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // a bit for each rounding: 1 is down
   if (options_.rounding_seed != 0)
     down =
         mixed(mixed(options_.rounding_seed * 2 + (ask ? 1 : 0)) ^ std::bit_cast<std::uint32_t>(z));

@@ -12,30 +12,32 @@ namespace farcull {
 
 struct WorstCanvasOptions {
   int subpixel_bits = 8;
-  int depth_bits =
-      32;  // 32: depths are stored as computed floats; 24: rounded to multiples of 2^-24
+  /// 32: depths are stored as computed floats; 24: they are rounded to multiples of 2^-24.
+  int depth_bits = 32;
   int max_resolution = 16370;
   /// True: the canvas keeps the guarantees of core/native/canvas.h, and no more. Corners are not
   /// moved, but the floats that compare a pixel centre with an edge are rounded as badly as IEEE
   /// 754 allows.
   bool exact_samples = false;
   /// An asked depth lies this far behind D(exit), the mapped exit depth, as on a GL device. Tests
-  /// set less, to show that culling then fails.
+  /// set less, to show that culling then misses pairs.
   float asked_behind = kAskedBehind;
   /// 0: each program rounds depths as badly as it may: stored depths up, asked depths down.
   /// Else: the seed by which each program, independently, rounds each depth up or down.
   std::uint64_t rounding_seed = 0;
 };
 
-/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is strictly inside the
+/// How the canvas draws:
+/// - Proxies (A1 to A4). A pixel gets a fragment only if its centre is strictly inside the
 /// quadrilateral for every choice of corners that the roundings of the vertex stage, the division
-/// by w, the viewport transform and snapping allow. SolidProgram::interval_worst evaluates the
-/// solid: it discards a fragment if any rounding discards it, and makes the entry as late and the
-/// exit as early as any rounding does. Depths (A4, A5): storing and asking are two programs. Each
-/// rounds the depths, and converts them to 24 bits, in its own direction; with exact_samples both
-/// round to nearest, as the native canvas does. A query sees exactly what passes (A6). Triangles
-/// (fixed depth) are sampled at pixel centres without displacement, and both programs round their
-/// depths in the same direction: the assumptions promise nothing about them.
+/// by w, the viewport transform and snapping allow.
+/// - The solid, by SolidProgram::interval_worst. A fragment is discarded if any rounding discards
+/// it. The entry is as late, and the exit as early, as any rounding makes them.
+/// - Depths (A4, A5). Storing and asking are two programs. Each rounds the depths, and converts
+/// them to 24 bits, in its own direction; with exact_samples both round to nearest, as the native
+/// canvas does. A query sees exactly what passes (A6).
+/// - Triangles (fixed depth). They are sampled at pixel centres without displacement, and both
+/// programs round depths in the same direction: the assumptions promise nothing about triangles.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});

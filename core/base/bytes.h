@@ -13,16 +13,13 @@
 
 namespace farcull {
 
-// Base64 (RFC 4648), padded, without line breaks.
-
+/// Base64 (RFC 4648), padded, without line breaks.
 std::string to_base64(std::span<const std::uint8_t> bytes);
-
 /// Decodes the output of to_base64(). Empty if to_base64() never returns `text`, for example
 /// because unused bits before the padding are not 0.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
-// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
-
+/// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
 class Fnv1a {
  public:
   void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
@@ -45,8 +42,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate names its list of pairs by it.
-
+/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate names its list of pairs by it.
 class Sha256 {
  public:
   void add(std::string_view bytes);
@@ -63,7 +59,6 @@ class Sha256 {
   std::uint64_t bytes_ = 0;  // bytes added so far
 };
 
-/// The SHA-256 of a text.
 std::string sha256(std::string_view text);
 
 }  // namespace farcull

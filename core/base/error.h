@@ -10,8 +10,8 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// line: of a text file, from 1; 0: no line. A text may name a parameter in braces, as in
-  /// "{radius}"; the reader sees its name as the program writes it.
+  /// line: of a text file, from 1; 0: no line. A text may name a parameter as "{depth_format}" and
+  /// a command as "{doctor}". Only the program knows how its users write these names.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
@@ -19,11 +19,6 @@ class Error : public std::runtime_error {
   std::string remedy;  // what to do next
   long line;
 };
-
-// ---- names of parameters ----
-//
-// A text names a parameter as {depth_format} and a command as {doctor}. Only the program knows how
-// its users write these names (--depth-format).
 
 /// Replaces each {parameter} in the text by the program's spelling of it, or by the bare name if
 /// the program has set no spelling.

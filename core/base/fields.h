@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 /// Use inside a struct: makes these members its fields, with these names and in this order.
 ///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };

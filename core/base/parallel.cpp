@@ -1,14 +1,9 @@
 // A pool of threads, since starting a thread takes as long as a small step of a query.
 #include "core/base/parallel.h"
 
-#include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <exception>
-#include <functional>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #ifndef _WIN32

@@ -52,13 +52,13 @@ enum class Reason : std::uint8_t {
   meetings,        // k such pairs are ignored, n are not; m objects are tested against themselves
   crowded,         // too many such pairs to list; m and k as in meetings
   block_pairs,     // boxes of n pairs of blocks overlap, in m pairs of objects (or of one and
-                   // itself); k pairs have a corner that moved and were compared; no k: all were
+                   // itself); only the k pairs with a corner that moved were compared; no k: all
   normal_pairs,    // as block_pairs; triangles are also compared along their normals
   oriented_pairs,  // as block_pairs; oriented boxes of the blocks overlap too
   moved_pairs,     // as block_pairs; boxes of blocks were kept and moved with their objects
   boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
   boxes_decide_little,  // not compared: boxes of triangles would settle little or cost much
-  no_boxes_overlap,     // no two objects' boxes overlap except k ignored pairs; none has `self` set
+  no_boxes_overlap,     // no objects' boxes overlap but k ignored pairs; no object has `self` set
   no_box_pairs,         // no two triangles that could collide have boxes that overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
@@ -67,12 +67,12 @@ enum class Reason : std::uint8_t {
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
   set_unchanged,        // what the passes store has not changed since the last visit of the view
-  passes,               // n passes ran; n < 2: the stored set of the other has not changed
+  passes,               // n of 2 passes ran; the stored set of a pass left out has not changed
   few_left,             // n triangles are left, at most m, so no further view is drawn
   few_to_test,          // n triangles are left; m or fewer are cheaper to test than to cull
   patches_cut,          // n patches of at most m triangles
   patches_whole,        // no object tested against itself has more than m triangles: not cut
-  few_objects,          // n objects take part, fewer than m: one seldom hides all of another
+  few_objects,          // n objects take part, fewer than m: few objects seldom hide each other
   rounds_given,         // n rounds were asked for
   all_views,            // a triangle is culled if every view clears it
   little_culled,        // the round culled n of m triangles, too few for another round
@@ -80,7 +80,7 @@ enum class Reason : std::uint8_t {
   clusters_given,       // sizes of clusters are given
   clusters_large,       // occlusion queries, on more than n triangles
   clusters_small,       // occlusion queries, on n triangles, at most m
-  clusters_flags,       // flags, not queries: asking about a triangle costs nothing
+  clusters_flags,       // flags replace queries: asking about every single triangle costs nothing
   sweep,                // boxes of n objects with m triangles overlap; k and l: see Stage
   not_cleared,          // pairs that boxes found, without those that drawing cleared
   join_kept,            // boxes of the triangles that are kept

@@ -18,8 +18,8 @@
 namespace farcull {
 namespace {
 
-// The least number of letters to insert, delete, replace or swap with the next to turn one word
-// into the other (optimal string alignment). apart[i][k]: of the first i letters and the first k.
+// The least number of edits (likely_word()) that turn one word into the other (optimal string
+// alignment). apart[i][k]: edits from the first i letters of a to the first k letters of b.
 std::size_t letters_apart(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> apart(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   const auto same = [&](std::size_t i, std::size_t k) {

@@ -32,9 +32,9 @@ std::optional<T> parse_number(std::string_view text) {
   return text.empty() ? value : std::nullopt;
 }
 
-/// The one of `known` that `word` was probably meant to be: apart from case, at most two letters
-/// are inserted, deleted, replaced or swapped with the next, and fewer than half of its letters.
-/// Empty if there is none.
+/// The word of `known` that `word` is probably meant to be, or empty. It is at most two edits away,
+/// ignoring case, and fewer than half as many as `word` has letters. An edit inserts, deletes or
+/// replaces a letter, or swaps it with the next one.
 std::string likely_word(const std::string& word, const std::vector<std::string>& known);
 /// "did you mean NAME? ", or nothing if the name is empty.
 inline std::string did_you_mean(const std::string& name) {

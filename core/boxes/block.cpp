@@ -8,8 +8,6 @@
 namespace farcull {
 namespace {
 
-// Corners are prefetched this many triangles ahead.
-constexpr std::uint32_t kAhead = 16;
 constexpr float kLargest = std::numeric_limits<float>::max();
 
 // The bounds of points; relative_to() converts them to floats.
@@ -129,6 +127,92 @@ void fill_columns(const BoxAt& box, BlockLanes& out) {
 #endif
 }
 
+// A box to be put in order. Sides are halved, since a difference of two doubles may be infinite.
+struct Placed {
+  std::array<double, 3> middle, half;  // half: halves of its sides
+  std::uint32_t box;
+};
+
+Placed placed(const Box& box, std::uint32_t k) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  Placed out{{}, {}, k};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto half = [&](const Vec3& end) {
+      return 0.5 * std::clamp(end[static_cast<Eigen::Index>(axis)], -kLargest, kLargest);
+    };
+    out.middle[axis] = half(box.lo) + half(box.hi);
+    out.half[axis] = half(box.hi) - half(box.lo);
+  }
+  return out;
+}
+
+// The axis along which most middles lie farthest apart, and the range of their coordinates on it.
+struct Spread {
+  std::size_t axis = 0;
+  double lo = 0, hi = 0;
+  double half() const { return 0.5 * hi - 0.5 * lo; }
+  void widen(const Spread& other) {
+    if (other.half() > half()) *this = other;
+  }
+};
+
+// The spread of a sample without the eighth at either end, so that few distant boxes do not decide.
+Spread sampled_spread(std::span<const Placed> items) {
+  constexpr std::size_t kMost = 32;
+  const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
+  std::array<double, kMost> at;
+  Spread out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < n; ++k) at[k] = items[items.size() * k / n].middle[axis];
+    std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(n));
+    out.widen({axis, at[end], at[n - 1 - end]});
+  }
+  return out;
+}
+
+Spread whole_spread(std::span<const Placed> items) {
+  Spread out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [lo, hi] = std::ranges::minmax(
+        items | std::views::transform([&](const Placed& item) { return item.middle[axis]; }));
+    out.widen({axis, lo, hi});
+  }
+  return out;
+}
+
+// Puts the items in order. `at`: the position of the first item among all boxes.
+void sort_in_place(std::span<Placed> items, std::size_t at) {
+  while (items.size() > kWide) {
+    Spread spread = sampled_spread(items);
+    if (spread.half() == 0) spread = whole_spread(items);
+    if (spread.half() == 0) return;
+    // A box that spans the whole spread would make either part as long as the whole. Such boxes are
+    // set apart first, if they are at most half of the items (so that the depth stays logarithmic).
+    const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
+      const double middle = item.middle[spread.axis], half = item.half[spread.axis];
+      return middle - half <= spread.lo && middle + half >= spread.hi;
+    });
+    const auto large = static_cast<std::size_t>(rest - items.begin());
+    if (large > 0 && large <= items.size() / 2) {
+      sort_in_place(items.first(large), at);
+      items = items.subspan(large);
+      at += large;
+    }
+    // Split near the middle, at the end of a node of the largest height that fits the range.
+    std::size_t node = 1;
+    while (node * kWide < items.size()) node *= kWide;
+    const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;
+    const std::size_t low = split > at && split < at + items.size() ? split - at : items.size() / 2;
+    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(low), items.end(),
+                     [&](const Placed& a, const Placed& b) {
+                       return a.middle[spread.axis] < b.middle[spread.axis];
+                     });
+    sort_in_place(items.first(low), at);
+    items = items.subspan(low);
+    at += low;
+  }
+}
+
 }  // namespace
 
 FloatBox relative(const Box& box, const Vec3& origin) {
@@ -136,12 +220,11 @@ FloatBox relative(const Box& box, const Vec3& origin) {
 }
 
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  // Separate bounds for each of the three corners, so that no update waits for another.
+  // The three corners have bounds of their own, so that no update waits for another.
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {
-    // The corners may lie anywhere in memory, so they are prefetched.
-    prefetch(scene, std::min(t + kAhead, last));
+    prefetch(scene, std::min(t + kTrianglesAhead, last));
     const auto& [p, q, r] = scene.triangles[t];
     a.add(Bounds::of(scene.vertices[p]));
     b.add(Bounds::of(scene.vertices[q]));
@@ -157,7 +240,7 @@ void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, do
   const Bounds zero = Bounds::of(origin);
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {
-    prefetch(scene, std::min(t + kAhead, last));
+    prefetch(scene, std::min(t + kTrianglesAhead, last));
     out[t - from] = relative_box(bounds_of(scene, t), half, zero);
   }
 }
@@ -188,96 +271,6 @@ std::size_t blocks_of_tree(std::size_t leaves) {
   }
   return out;
 }
-
-namespace {
-
-// A box to be put in order. Sides are halved, since a difference of two doubles may be infinite.
-struct Placed {
-  std::array<double, 3> middle, half;  // half: halves of its sides
-  std::uint32_t box;
-};
-
-Placed placed(const Box& box, std::uint32_t k) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  Placed out{{}, {}, k};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto half = [&](const Vec3& end) {
-      return 0.5 * std::clamp(end[static_cast<Eigen::Index>(axis)], -kLargest, kLargest);
-    };
-    out.middle[axis] = half(box.lo) + half(box.hi);
-    out.half[axis] = half(box.hi) - half(box.lo);
-  }
-  return out;
-}
-
-// The axis along which most middles lie farthest apart, and the range of their coordinates on it.
-struct Spread {
-  std::size_t axis = 0;
-  double lo = 0, hi = 0;
-  double half() const { return 0.5 * hi - 0.5 * lo; }
-  void widen(const Spread& other) {
-    if (other.half() > half()) *this = other;
-  }
-};
-
-// The spread of a sample without an eighth at either end, so that few distant boxes do not decide.
-Spread sampled_spread(std::span<const Placed> items) {
-  constexpr std::size_t kMost = 32;
-  const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
-  std::array<double, kMost> at;
-  Spread out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < n; ++k) at[k] = items[items.size() * k / n].middle[axis];
-    std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(n));
-    out.widen({axis, at[end], at[n - 1 - end]});
-  }
-  return out;
-}
-
-Spread whole_spread(std::span<const Placed> items) {
-  Spread out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [lo, hi] = std::ranges::minmax(
-        items | std::views::transform([&](const Placed& item) { return item.middle[axis]; }));
-    out.widen({axis, lo, hi});
-  }
-  return out;
-}
-
-// Puts the items in order. `at`: the position of the first item among all boxes.
-void sort_in_place(std::span<Placed> items, std::size_t at) {
-  while (items.size() > kWide) {
-    Spread spread = sampled_spread(items);
-    if (spread.half() == 0) spread = whole_spread(items);
-    if (spread.half() == 0) return;
-    // Boxes that span the whole spread would make both parts as long as the whole, so they are set
-    // apart first, if they are at most half of the items (so that the depth stays logarithmic).
-    const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
-      const double middle = item.middle[spread.axis], half = item.half[spread.axis];
-      return middle - half <= spread.lo && middle + half >= spread.hi;
-    });
-    const auto large = static_cast<std::size_t>(rest - items.begin());
-    if (large > 0 && large <= items.size() / 2) {
-      sort_in_place(items.first(large), at);
-      items = items.subspan(large);
-      at += large;
-    }
-    // Split near the middle, at the end of a node of the largest height that fits the range.
-    std::size_t node = 1;
-    while (node * kWide < items.size()) node *= kWide;
-    const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;
-    const std::size_t low = split > at && split < at + items.size() ? split - at : items.size() / 2;
-    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(low), items.end(),
-                     [&](const Placed& a, const Placed& b) {
-                       return a.middle[spread.axis] < b.middle[spread.axis];
-                     });
-    sort_in_place(items.first(low), at);
-    items = items.subspan(low);
-    at += low;
-  }
-}
-
-}  // namespace
 
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order) {
   std::vector<Placed> items(boxes.size());

@@ -25,7 +25,7 @@
 
 namespace farcull {
 
-/// How far to grow boxes so that two at the distance `clearance` meet: half of it, rounded up.
+/// How far to grow two boxes at the distance `clearance` so that they meet: half of it, rounded up.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
@@ -231,10 +231,10 @@ void update_tree(const BoxOfLeaf& box_of_leaf, std::vector<std::uint32_t> leaves
   }
 }
 
-/// Orders boxes for a tree over them, so that boxes that follow one another are close. Each cut
-/// puts half of the boxes on either side, wherever they lie; boxes that reach across most of the
-/// others come first. So a distant or huge box enlarges only the nodes that it is in. Boxes may be
-/// infinite. order: receives their indices. O(n log n).
+/// Orders boxes for a tree over them, so that neighbours in the order are close. Each cut halves
+/// the number of boxes; boxes that span most of the others come first. So a distant or huge box
+/// enlarges only the nodes that it is in. Boxes may be infinite. order: receives their indices.
+/// Takes O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

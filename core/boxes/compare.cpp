@@ -50,7 +50,7 @@ HWY_INLINE std::uint32_t near_bits(const NormalLanes& normals, const OneBox& box
 // Compares the triangles of two blocks.
 class Comparison {
  public:
-  // Null vertices: pairs with a common vertex stay. Null normals: they are not compared.
+  // Null vertices: pairs with a common vertex stay. Null normals: normals are not compared.
   HWY_INLINE Comparison(const BlockLanes& a, const BlockLanes& b, const VertexBlock* a_vertices,
                         const VertexBlock* b_vertices, const NormalLanes* a_normals,
                         const NormalLanes* b_normals)
@@ -193,9 +193,8 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 }
 
 std::optional<NormalMargin> normal_margin(float reach, double clearance) {
-  // Bounds the rounding error when a triangle and a box are compared, relative to `farthest`, a
-  // bound of the distance from the origin to any corner of a box (docs/reliability.md, "Boxes of
-  // blocks").
+  // Bounds the rounding error when a triangle and a box are compared, relative to `farthest`, which
+  // bounds the distance of any box corner from the origin (docs/reliability.md, "Boxes of blocks").
   constexpr double kMargin = 0x1p-20;
   const double farthest = 1.74 * static_cast<double>(reach);  // 1.74 > sqrt(3)
   if (!(farthest >= 0x1p-60 && farthest <= 0x1p60)) return std::nullopt;
@@ -207,8 +206,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle gets the corners of the last triangle. It meets nothing, since its
-    // box, which is stored elsewhere, is empty.
+    // A lane without a triangle repeats the last one. It meets nothing, since its box is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;

@@ -1,10 +1,10 @@
 // Compares two blocks of at most 16 triangles on lanes: the boxes of their triangles along the axes
 // and, where these overlap often, the triangles along their normals as well.
 //
-// Much of the box of a large oblique triangle is far from its plane. Small triangles there overlap
-// the box, but are apart along the normal. If two triangles have a common point, so have their
-// images under any linear map, so any direction may be compared. Normals are computed in floats,
-// and a margin covers the rounding (docs/reliability.md, "Boxes of blocks").
+// The box of a large oblique triangle reaches far from its plane. Small triangles in that box may
+// be apart from it along its normal. If two triangles have a common point, so have their images
+// under any linear map, so any direction may be compared. Normals are computed in floats, and a
+// margin covers the rounding (docs/reliability.md, "Boxes of blocks").
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ struct alignas(64) VertexBlock {
   std::array<std::array<std::uint32_t, kWide>, 3> corner;
 };
 
-/// The normals of the triangles of a block, of length 1 up to rounding or 0, and where each
-/// triangle begins and ends along its own normal, grown by a margin.
+/// The normals of the triangles of a block, of length 1 up to rounding or 0. [lo, hi]: the range of
+/// each triangle along its own normal, grown by a margin.
 struct alignas(64) NormalLanes {
   std::array<std::array<float, kWide>, 3> normal;
   std::array<float, kWide> lo, hi;
@@ -33,8 +33,8 @@ struct alignas(64) NormalLanes {
 struct NormalMargin {
   float reach, margin;
 };
-/// reach: the largest |coordinate| of a triangle's box, relative to the origin. Empty if the
-/// coordinates are too large or too small for floats.
+/// reach: the largest |coordinate| of a triangle's box, relative to the origin. Empty if it is too
+/// large or too small for floats.
 std::optional<NormalMargin> normal_margin(float reach, double clearance);
 /// Computes the normals of at most kWide triangles, at least one.
 void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, const Vec3& origin,

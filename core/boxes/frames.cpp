@@ -2,9 +2,7 @@
 #include "core/boxes/frames.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <optional>
 
 #include "core/base/parallel.h"
 
@@ -21,8 +19,8 @@ std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std:
   return out;
 }
 
-// Overlapping pairs of blocks of which at least one moved, each pair once. moved: per block,
-// whether it did. moved_blocks: those that did, ascending.
+// Overlapping pairs of blocks with at least one moved block, each pair once. moved: per block,
+// whether it moved. moved_blocks: the blocks that moved, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
@@ -49,11 +47,9 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
       own.clear();
       pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
       for (const auto& [a, b] : own) {
-        // If both moved, each finds the other, so one finding is dropped.
+        // If both blocks moved, each finds the other, so one finding is dropped.
         if (of == with) {
-          if (!moved[b] || a <= b) {
-            found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
-          }
+          if (!moved[b] || a <= b) found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
         } else if (!second) {
           found[chunk].between.push_back({a, b});
         } else if (!moved[b]) {

@@ -15,10 +15,10 @@ namespace farcull {
 /// What plan_boxes() and find_boxes() of one frame keep for those of the next. A frame that does
 /// not come to its end leaves nothing behind for the next one.
 ///
-/// Whether the boxes of two triangles or of two blocks overlap depends on the corners of triangles
-/// alone. So two blocks in which no corner moved have the pairs of the last frame, and only blocks
-/// with a corner that moved are examined. The order of triangles is kept too: any order gives right
-/// results, and a good one stays good for a while.
+/// Whether the boxes of two triangles or blocks overlap depends on their corners alone. So two
+/// blocks in which no corner moved keep their pairs, and only blocks with a corner that moved are
+/// examined. The order of triangles is kept too: any order gives right results, and a good order
+/// stays good for a while.
 struct FrameMemory {
   MovedCorners moved;
   std::optional<std::uint64_t> frame;  // last frame that was planned, found and decided by blocks

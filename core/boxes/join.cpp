@@ -18,10 +18,10 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/base/uninitialized.h"
 #include "core/boxes/join.h"
 #include "core/boxes/lanes-inl.h"
-#include "core/boxes/portions.h"
 #include "core/scene/pair_sort.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -58,9 +58,36 @@ HWY_EXPORT(find_leaves_here);
 
 namespace {
 
-std::uint64_t find_leaves(const BoxTree<double>& tree, const WideBoxes<double>* blocks,
-                          const Box& box, std::uint32_t least, std::vector<std::uint32_t>& leaves) {
-  return HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree, blocks, box, least, leaves);
+// Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
+// one Memory, and `find` appends to memory.pairs. flush() gives these to `take` if there are many;
+// the rest is given at the end. Returns the number of pairs.
+template <class Memory, class Take, class Find>
+std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
+                            const Take& take, const Find& find) {
+  constexpr std::size_t kMany = std::size_t{1} << 14;
+  std::atomic<std::uint64_t> next = 0, given = 0;
+  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
+    Memory memory;
+    const auto give = [&](std::size_t least) {
+      if (memory.pairs.size() < least) return;
+      given += memory.pairs.size();
+      take(memory.pairs);
+      memory.pairs.clear();
+    };
+    try {
+      for (;;) {
+        stop_point();
+        const std::uint64_t begin = next.fetch_add(portion);
+        if (begin >= count) break;
+        find(begin, std::min(count, begin + portion), memory, [&] { give(kMany); });
+      }
+      give(1);
+    } catch (...) {
+      next = count;  // the other threads end early too
+      throw;
+    }
+  });
+  return given;
 }
 
 // With fewer items than this, a second thread to find pairs costs more than it saves.
@@ -75,6 +102,32 @@ void make_room(const OrderedPairs& join, std::size_t more, std::vector<TriangleP
   if (needed <= pairs.capacity()) return;
   const double factor = std::clamp(1 / join.share(), 2.0, 8.0);
   pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
+}
+
+// True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
+// cost a few more nodes, but overlaps inside an owner are never examined.
+bool are_few(std::span<const std::uint32_t> owners) {
+  std::size_t changes = 0;
+  for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
+    if (owners[k] < owners[k - 1]) return false;
+    changes += owners[k] != owners[k - 1];
+  }
+  return changes < kWide;
+}
+
+// Sorts distinct numbers below 64 * marks.size(). Long lists are sorted with one mark bit for each
+// number. All marks are clear before and after.
+void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
+  if (numbers.size() < marks.size() / 8) {
+    std::ranges::sort(numbers);
+    return;
+  }
+  for (const std::uint32_t number : numbers) marks[number / 64] |= std::uint64_t{1} << number % 64;
+  std::size_t next = 0;
+  for (std::uint32_t word = 0; word < marks.size(); ++word) {
+    for (; marks[word] != 0; marks[word] &= marks[word] - 1)
+      numbers[next++] = 64 * word + static_cast<std::uint32_t>(std::countr_zero(marks[word]));
+  }
 }
 
 }  // namespace
@@ -121,36 +174,6 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
   }
   plant(std::move(own));
 }
-
-namespace {
-
-// True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
-// cost a few more nodes, but overlaps inside an owner are never examined.
-bool are_few(std::span<const std::uint32_t> owners) {
-  std::size_t changes = 0;
-  for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
-    if (owners[k] < owners[k - 1]) return false;
-    changes += owners[k] != owners[k - 1];
-  }
-  return changes < kWide;
-}
-
-// Sorts distinct numbers below 64 * marks.size(). Long lists are sorted with one mark bit for each
-// number. All marks are clear before and after.
-void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
-  if (numbers.size() < marks.size() / 8) {
-    std::ranges::sort(numbers);
-    return;
-  }
-  for (const std::uint32_t number : numbers) marks[number / 64] |= std::uint64_t{1} << number % 64;
-  std::size_t next = 0;
-  for (std::uint32_t word = 0; word < marks.size(); ++word) {
-    for (; marks[word] != 0; marks[word] &= marks[word] - 1)
-      numbers[next++] = 64 * word + static_cast<std::uint32_t>(std::countr_zero(marks[word]));
-  }
-}
-
-}  // namespace
 
 // Drops items whose boxes overlap the box of no other owner. The box of an owner contains all of
 // its boxes, so such an item has no pair. Precondition: owners are few and ascend with the items.
@@ -199,12 +222,13 @@ void OrderedPairs::plant(std::vector<Box> boxes) {
 void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) const {
   part.found.clear();
   const Box box = blocks_[tree_.first[0] + leaf / kWide].get(leaf % kWide);
-  part.compared += find_leaves(tree_, blocks_.data(), box, least, part.found);
+  part.compared +=
+      HWY_DYNAMIC_DISPATCH(find_leaves_here)(tree_, blocks_.data(), box, least, part.found);
   for (std::uint32_t& other : part.found) other = order_[other];
 }
 
-// The first item of a later owner, if leaves are grouped by owner: owners then ascend with the
-// items, so the result is the number of items of this owner and of earlier ones.
+// The first item of a later owner, if leaves are grouped by owner. Owners then ascend with the
+// items, so the result also counts the items of this owner and of earlier ones.
 std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
   const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
   return static_cast<std::uint32_t>(behind - owner_.begin());
@@ -288,7 +312,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
       append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
-  // Joins parts in order and stops at the first incomplete one: the items after it are asked again.
+  // Joins parts in order, up to the first incomplete one; the items after it are asked again.
   bool full = false;
   for (std::size_t chunk = 0; chunk < chunks && !full; ++chunk) {
     const Part& part = parts_[chunk];
@@ -478,9 +502,8 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
         scene, part.size(), clearance, threads,
         [&](std::size_t begin, std::size_t end, BlockFindings& out) {
           std::array<LanePair, kAtOnce> pairs;
-          for (std::size_t k = begin; k < end; ++k) {
+          for (std::size_t k = begin; k < end; ++k)
             pairs[k - begin] = {lanes.place[part[k].a], lanes.place[part[k].b], !vertices.empty()};
-          }
           compare_blocks({.first = blocks.lanes, .second = lanes.more}, vertices, normals,
                          std::span(pairs).first(end - begin), out);
         },

@@ -2,7 +2,6 @@
 // that memory does not grow with the number of pairs.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -57,8 +56,8 @@ class OrderedPairs {
   /// pairs of one item per thread; may be empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == items_.size(); }
-  /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. An
-  /// exception of `take` is thrown again here, and some pairs are not given then.
+  /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. If
+  /// `take` throws, the exception is thrown again here, and some pairs were not given.
   std::uint64_t give(const TakePairs& take);
   /// All pairs that are left; if there are more than `most`, most + 1 of them.
   std::vector<TrianglePair> all(std::size_t most = SIZE_MAX);
@@ -153,27 +152,28 @@ struct BlockPairs {
 std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks);
 
 /// Pairs of blocks whose boxes overlap. If two triangles are at most the clearance apart, their
-/// grown boxes have a common point, which lies in the boxes of their blocks. So these blocks are a
-/// pair here, or the objects are left to views.
+/// grown boxes have a common point, which lies in the boxes of their blocks. So their blocks are a
+/// pair here.
 struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared
   bool normals = false;                            // triangles are compared along their normals too
   BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the last frame that are still right
-  std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap, including pairs in
-                                   // which nothing moved; those are not listed
-  std::uint64_t meetings = 0;      // pairs of objects, or of one and itself, that these decide
+  std::uint64_t overlaps = 0;      // pairs of blocks whose boxes overlap; `pairs` lacks those in
+                                   // which nothing moved
+  std::uint64_t meetings = 0;      // pairs of objects, or of one and itself, that blocks decide
   std::uint64_t triangles = 0;     // in all blocks that are in a pair
   bool moved = false;  // boxes were kept, and moved with their objects (core/boxes/rigid.h)
   bool empty() const { return meetings == 0; }
 };
 
-/// Gives to `take` the pairs a < b of triangles whose boxes overlap, of these pairs of blocks, and
-/// returns their number. Blocks share no triangle, so each pair is given once if each pair of
-/// blocks is there once. along_normals: leaves out pairs in which the normal of one triangle
+/// Gives to `take` the pairs a < b of triangles, of these pairs of blocks, whose boxes overlap.
+/// Returns their number. Blocks share no triangle, so no pair is given twice unless a pair of
+/// blocks is listed twice. along_normals: leaves out pairs in which the normal of one triangle
 /// separates it from the other's box. neighbours: false leaves out pairs of one object that share a
-/// vertex index. An exception of `take` is thrown again here, and some pairs are not given then.
+/// vertex index. If `take` throws, the exception is thrown again here, and some pairs were not
+/// given.
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
                                  const BlockPairs& pairs, bool along_normals, double clearance,
                                  bool neighbours, unsigned threads, const TakePairs& take);
@@ -182,9 +182,9 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
 std::vector<TrianglePair> sorted_pairs(
     unsigned threads, const std::function<std::uint64_t(const TakePairs& take)>& give);
 
-/// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1. Gives to `take` the
-/// certain pairs that `find` appends, and those others whose boxes overlap in doubles. Returns how
-/// many it gave. An exception of `find` or `take` is thrown again here.
+/// Calls find(begin, end, findings) for portions of the numbers 0 .. count - 1. Gives to `take` all
+/// `pairs` that `find` appends, and each pair of `perhaps` whose boxes overlap in doubles. Returns
+/// how many it gave. Exceptions of `find` and `take` are thrown again here.
 std::uint64_t give_findings(
     const Scene& scene, std::size_t count, double clearance, unsigned threads,
     const std::function<void(std::size_t begin, std::size_t end, BlockFindings& out)>& find,

@@ -16,50 +16,6 @@ bool collides_with_itself(const Object& object) { return object.self && object.t
 
 constexpr std::size_t kMeetingsPerBlock = 8;
 
-}  // namespace
-
-ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
-                             std::span<const ObjectPair> ignored) {
-  std::vector<std::uint32_t> objects(blocks.objects.size());
-  std::iota(objects.begin(), objects.end(), 0u);
-  const std::size_t most = kMeetingsPerBlock * blocks.ranges.size();
-  ObjectOverlaps out;
-  out.self = static_cast<std::uint64_t>(std::ranges::count_if(scene.objects, collides_with_itself));
-  const std::vector<TrianglePair> pairs = box_join(blocks.objects, objects, objects, most);
-  out.crowded = pairs.size() > most;
-  if (out.crowded) return out;
-  for (const auto& [a, b] : pairs) {
-    if (std::ranges::binary_search(ignored, ObjectPair{std::min(a, b), std::max(a, b)})) continue;
-    const bool ordered = blocks.count(a) <= blocks.count(b);
-    out.all.push_back({ordered ? a : b, ordered ? b : a});
-  }
-  out.pairs = out.all.size();
-  for (const std::uint32_t o : objects) {
-    if (collides_with_itself(scene.objects[o])) out.all.push_back({o, o});
-  }
-  return out;
-}
-
-std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
-                                   std::span<const ObjectOverlap> meetings) {
-  std::vector<Box> out(blocks.objects.size(), Box::empty());
-  for (const ObjectOverlap& meeting : meetings) {
-    const Box common = intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
-    out[meeting.a].add(common);
-    out[meeting.b].add(common);
-  }
-  return out;
-}
-
-std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks) {
-  std::uint64_t out = 0;
-  for (const std::uint32_t block : blocks_in(pairs, blocks.ranges.size()))
-    out += blocks.ranges[block].count;
-  return out;
-}
-
-namespace {
-
 // True if an object whose blocks are too small for floats can meet another one or itself.
 bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
   if (blocks.stretched.empty()) return false;
@@ -88,9 +44,8 @@ std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
   std::vector<MeetingPart> parts;
   for (std::uint32_t k = 0; k < meetings.size(); ++k) {
     const std::uint32_t a = meetings[k].a, end = blocks.first[a] + blocks.count(a);
-    for (std::uint32_t from = blocks.first[a]; from < end; from += kBlocksOfPart) {
+    for (std::uint32_t from = blocks.first[a]; from < end; from += kBlocksOfPart)
       parts.push_back({.meeting = k, .from = from, .to = std::min(from + kBlocksOfPart, end)});
-    }
   }
   return parts;
 }
@@ -158,8 +113,8 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
 // Finds the pairs of blocks of each part. Gives up a meeting that exceeds its most_pairs(), and all
-// meetings if the scene exceeds its own. A meeting that is given up counts as its limit plus one
-// pair, so that the answer does not depend on threads. find(meeting, part, most): appends pairs to
+// meetings if the scene exceeds its own. A meeting that is given up counts as most_pairs() + 1
+// pairs, so that the answer does not depend on threads. find(meeting, part, most): appends pairs to
 // the part, as pair_blocks().
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
@@ -199,28 +154,10 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
 // Oriented boxes are used if, in a sample, they leave at most this many pairs per triangle.
 constexpr double kOrientedPerTriangle = 64;
 // Normals are compared if, in a sample, boxes along the axes leave more than kFewOverlaps pairs per
-// triangle, and normals leave at most 1 / kLeastDrop of these and at most kMostLeft. Per triangle,
-// normals cost about as much as deciding two pairs exactly, and oriented boxes as ten.
+// triangle, and normals leave at most 1 / kLeastDrop of these pairs and at most kMostLeft per
+// triangle. For a triangle, normals cost about as much as deciding two pairs exactly, and oriented
+// boxes as much as ten.
 constexpr double kFewOverlaps = 2, kLeastDrop = 4, kMostLeft = 8;
-
-}  // namespace
-
-double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance) {
-  constexpr std::size_t kSampled = 64;  // pairs of blocks
-  const std::size_t all = meetings.pairs.size();
-  if (all == 0) return 0;
-  BlockPairs some;
-  for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
-    const std::vector<BlockPair>& pairs = meetings.pairs.*list;
-    append_evenly(pairs, (kSampled * pairs.size() + all - 1) / all, some.*list);
-  }
-  const std::uint64_t found =
-      give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
-  const double each = static_cast<double>(found) / static_cast<double>(some.size());
-  return each * static_cast<double>(all) / static_cast<double>(meetings.triangles);
-}
-
-namespace {
 
 // Decides all meetings by oriented boxes of blocks. Null if these overlap too often as well.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
@@ -245,6 +182,61 @@ std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
 }
 
 }  // namespace
+
+ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
+                             std::span<const ObjectPair> ignored) {
+  std::vector<std::uint32_t> objects(blocks.objects.size());
+  std::iota(objects.begin(), objects.end(), 0u);
+  const std::size_t most = kMeetingsPerBlock * blocks.ranges.size();
+  ObjectOverlaps out;
+  out.self = static_cast<std::uint64_t>(std::ranges::count_if(scene.objects, collides_with_itself));
+  const std::vector<TrianglePair> pairs = box_join(blocks.objects, objects, objects, most);
+  out.crowded = pairs.size() > most;
+  if (out.crowded) return out;
+  for (const auto& [a, b] : pairs) {
+    if (std::ranges::binary_search(ignored, ObjectPair{std::min(a, b), std::max(a, b)})) continue;
+    const bool ordered = blocks.count(a) <= blocks.count(b);
+    out.all.push_back({ordered ? a : b, ordered ? b : a});
+  }
+  out.pairs = out.all.size();
+  for (const std::uint32_t o : objects) {
+    if (collides_with_itself(scene.objects[o])) out.all.push_back({o, o});
+  }
+  return out;
+}
+
+std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
+                                   std::span<const ObjectOverlap> meetings) {
+  std::vector<Box> out(blocks.objects.size(), Box::empty());
+  for (const ObjectOverlap& meeting : meetings) {
+    const Box common = intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
+    out[meeting.a].add(common);
+    out[meeting.b].add(common);
+  }
+  return out;
+}
+
+std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks) {
+  std::uint64_t out = 0;
+  for (const std::uint32_t block : blocks_in(pairs, blocks.ranges.size()))
+    out += blocks.ranges[block].count;
+  return out;
+}
+
+double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance) {
+  constexpr std::size_t kSampled = 64;  // pairs of blocks
+  const std::size_t all = meetings.pairs.size();
+  if (all == 0) return 0;
+  BlockPairs some;
+  for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
+    const std::vector<BlockPair>& pairs = meetings.pairs.*list;
+    append_evenly(pairs, (kSampled * pairs.size() + all - 1) / all, some.*list);
+  }
+  const std::uint64_t found =
+      give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
+  const double each = static_cast<double>(found) / static_cast<double>(some.size());
+  return each * static_cast<double>(all) / static_cast<double>(meetings.triangles);
+}
 
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings) {

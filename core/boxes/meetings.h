@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -67,11 +66,10 @@ struct BlockDecision {
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
-/// The decision of decide_by_blocks(), if the blocks and meetings alone make it. Null: it depends
-/// on the pairs of blocks.
+/// The decision of decide_by_blocks(), if the blocks and meetings alone determine it. Else null.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);
-/// The decision of decide_by_blocks(), if decide_by_meetings() makes none. Precondition: the blocks
+/// The decision of decide_by_blocks(), if decide_by_meetings() gives none. Precondition: the blocks
 /// have their boxes or lanes. regions: as boxes_of_meetings() gives them.
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,

@@ -9,7 +9,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -311,18 +310,16 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
   return moments;
 }
 
-// Corners are prefetched this many triangles ahead.
-constexpr std::uint32_t kAhead = 16;
-
-// Puts the triangles of an object that meet its region in order, and the others behind them.
-// Returns how many meet it, and adds their boxes to `all`.
+// Puts the triangles of an object that meet its region in order, and its other triangles behind
+// them. Returns how many meet it, and adds their boxes to `all`.
 std::uint32_t order_in(const Scene& scene, const Object& object, double clearance,
                        const Box& region, std::span<std::uint32_t> order, Box& all) {
   std::vector<Box> boxes;
   std::vector<std::uint32_t> inside, outside;
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::uint32_t t = object.first_triangle + k;
-    prefetch(scene, object.first_triangle + std::min(k + kAhead, object.triangle_count - 1));
+    prefetch(scene,
+             object.first_triangle + std::min(k + kTrianglesAhead, object.triangle_count - 1));
     const Box box = grown_box(scene, t, clearance);
     if (!overlap(box, region)) {
       outside.push_back(t);

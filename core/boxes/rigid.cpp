@@ -13,33 +13,6 @@
 #include "core/base/uninitialized.h"
 
 namespace farcull {
-
-Box moved(const RigidMotion& motion, const Box& box) {
-  Box out;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double* const row = motion.r.data() + 3 * axis;
-    const double t = motion.t[static_cast<std::size_t>(axis)];
-    const auto low = [&](Eigen::Index k) { return row[k] < 0 ? box.hi[k] : box.lo[k]; };
-    const auto high = [&](Eigen::Index k) { return row[k] < 0 ? box.lo[k] : box.hi[k]; };
-    out.lo[axis] = moved_coordinate(row, low(0), low(1), low(2), t);
-    out.hi[axis] = moved_coordinate(row, high(0), high(1), high(2), t);
-  }
-  return out;
-}
-
-bool keeps_finite(const RigidMotion& motion, const Box& box) {
-  constexpr double kMost = std::numeric_limits<double>::max() / 4;
-  if (box.is_empty()) return true;
-  const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double sum = std::abs(motion.t[axis]);
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += std::abs(motion.r[3 * axis + k]) * most[static_cast<Eigen::Index>(k)];
-    if (!(sum <= kMost)) return false;
-  }
-  return true;
-}
-
 namespace {
 
 // Lists the vertices of each block.
@@ -57,44 +30,6 @@ void list_vertices(const Scene& scene, RigidBlocks& out) {
     out.first_vertex.push_back(static_cast<std::uint32_t>(out.vertices.size()));
   }
 }
-
-}  // namespace
-
-RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
-  RigidBlocks out;
-  out.of = std::make_shared<TriangleBlocks>(make_blocks(scene, 0, threads));
-  TriangleBlocks& blocks = *out.of;
-  blocks.boxes = {};
-  blocks.stretched = {};
-  blocks.order.resize(scene.triangles.size());
-  out.object_of.resize(blocks.ranges.size());
-  const std::size_t objects = scene.objects.size();
-  out.trees.resize(objects);
-  std::vector<std::size_t> at(objects + 1, 0);
-  for (std::size_t o = 0; o < objects; ++o)
-    at[o + 1] = at[o] + blocks_of_tree(blocks.first[o + 1] - blocks.first[o]);
-  out.nodes.resize(at.back());
-  for_each_shared(objects, threads, [&](std::size_t o) {
-    const std::uint32_t first = scene.objects[o].first_triangle,
-                        count = scene.objects[o].triangle_count;
-    std::vector<Box> boxes(count);
-    for (std::uint32_t k = 0; k < count; ++k) boxes[k] = grown_box(scene, first + k, 0);
-    const auto order = std::span(blocks.order).subspan(first, count);
-    spatial_order(boxes, order);
-    std::vector<Box> leaves(blocks.first[o + 1] - blocks.first[o], Box::empty());
-    for (std::uint32_t k = 0; k < count; ++k) {
-      leaves[k / kWide].add(boxes[order[k]]);
-      order[k] += first;
-    }
-    std::fill_n(out.object_of.begin() + blocks.first[o], leaves.size(),
-                static_cast<std::uint32_t>(o));
-    out.trees[o] = make_tree<double>(leaves, out.nodes, at[o]);
-  });
-  list_vertices(scene, out);
-  return out;
-}
-
-namespace {
 
 // Walks down the trees. All nodes of one height are numbered: node k of object o has the number
 // first[o] + k, where first[o] is the first block of o. So numbers ascend with the objects, and a
@@ -200,7 +135,7 @@ class Walk {
   UninitializedVector<BlockLanes> lanes_;  // per such node: its children
 };
 
-// The middle of the places where objects meet, so that floats relative to it are fine there.
+// The middle of the places where objects meet: floats relative to it are finest there.
 Vec3 middle_of_meetings(const TriangleBlocks& blocks, std::span<const ObjectOverlap> meetings) {
   Box all = Box::empty();
   for (const auto& [a, b] : meetings) all.add(intersection(blocks.objects[a], blocks.objects[b]));
@@ -209,6 +144,66 @@ Vec3 middle_of_meetings(const TriangleBlocks& blocks, std::span<const ObjectOver
 }
 
 }  // namespace
+
+Box moved(const RigidMotion& motion, const Box& box) {
+  Box out;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double* const row = motion.r.data() + 3 * axis;
+    const double t = motion.t[static_cast<std::size_t>(axis)];
+    const auto low = [&](Eigen::Index k) { return row[k] < 0 ? box.hi[k] : box.lo[k]; };
+    const auto high = [&](Eigen::Index k) { return row[k] < 0 ? box.lo[k] : box.hi[k]; };
+    out.lo[axis] = moved_coordinate(row, low(0), low(1), low(2), t);
+    out.hi[axis] = moved_coordinate(row, high(0), high(1), high(2), t);
+  }
+  return out;
+}
+
+bool keeps_finite(const RigidMotion& motion, const Box& box) {
+  constexpr double kMost = std::numeric_limits<double>::max() / 4;
+  if (box.is_empty()) return true;
+  const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double sum = std::abs(motion.t[axis]);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += std::abs(motion.r[3 * axis + k]) * most[static_cast<Eigen::Index>(k)];
+    if (!(sum <= kMost)) return false;
+  }
+  return true;
+}
+
+RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
+  RigidBlocks out;
+  out.of = std::make_shared<TriangleBlocks>(make_blocks(scene, 0, threads));
+  TriangleBlocks& blocks = *out.of;
+  blocks.boxes = {};
+  blocks.stretched = {};
+  blocks.order.resize(scene.triangles.size());
+  out.object_of.resize(blocks.ranges.size());
+  const std::size_t objects = scene.objects.size();
+  out.trees.resize(objects);
+  std::vector<std::size_t> at(objects + 1, 0);
+  for (std::size_t o = 0; o < objects; ++o)
+    at[o + 1] = at[o] + blocks_of_tree(blocks.first[o + 1] - blocks.first[o]);
+  out.nodes.resize(at.back());
+  for_each_shared(objects, threads, [&](std::size_t o) {
+    const std::uint32_t first = scene.objects[o].first_triangle,
+                        count = scene.objects[o].triangle_count;
+    std::vector<Box> boxes(count);
+    for (std::uint32_t k = 0; k < count; ++k) boxes[k] = grown_box(scene, first + k, 0);
+    const auto order = std::span(blocks.order).subspan(first, count);
+    spatial_order(boxes, order);
+    std::vector<Box> leaves(blocks.first[o + 1] - blocks.first[o], Box::empty());
+    for (std::uint32_t k = 0; k < count; ++k) {
+      leaves[k / kWide].add(boxes[order[k]]);
+      order[k] += first;
+    }
+    std::fill_n(out.object_of.begin() + blocks.first[o], leaves.size(),
+                static_cast<std::uint32_t>(o));
+    out.trees[o] = make_tree<double>(leaves, out.nodes, at[o]);
+  });
+  list_vertices(scene, out);
+  return out;
+}
 
 std::optional<BlockDecision> decide_by_motions(const Scene& scene,
                                                std::span<const RigidMotion> motions,

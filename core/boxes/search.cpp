@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "core/base/error.h"
@@ -72,12 +71,10 @@ void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, Fra
 
 BoxesPlan plan_boxes(const Scene& scene, const BoxesSettings& settings, unsigned threads,
                      FrameMemory* memory, const BlockDecision* decided) {
-  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
+  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance))
     throw std::logic_error("plan_boxes: the clearance is negative or not finite");
-  }
-  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31) {
+  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31)
     throw Error(scene.name, "has 2^31 triangles and objects, or more", "split it into scenes");
-  }
   const Stopwatch watch;
   BoxesPlan plan;
   plan.settings = settings;

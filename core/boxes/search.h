@@ -1,8 +1,8 @@
-// The method `boxes` finds every pair of triangles whose boxes overlap. Where large triangles lie
-// among small ones, it leaves out pairs that are apart along the normal of one of the two; where
+// The method `boxes` finds every pair of triangles whose boxes overlap. If large triangles lie
+// among small ones, it leaves out pairs that are apart along the normal of one of the two; if
 // slivers lie obliquely, pairs whose oriented boxes are apart. No pair that intersects is lost
-// (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"), between objects or inside those
-// tested against themselves. The method decides nothing exactly; verify/ does.
+// (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"). Pairs are of two objects, or of
+// one that is tested against itself. The method decides nothing exactly; verify/ does.
 //
 // A plan says what finds the pairs: boxes of blocks of 16 triangles, along the axes or oriented, or
 // a tree of the boxes of all triangles. The rules are fixed: the same scene and settings give the

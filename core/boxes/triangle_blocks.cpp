@@ -15,9 +15,6 @@
 namespace farcull {
 namespace {
 
-// Corners are prefetched this many triangles ahead.
-constexpr std::size_t kAhead = 16;
-
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
 // True if the boxes of an object's blocks are much longer than boxes of compact parts of a surface
@@ -36,7 +33,7 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
 // Objects with fewer triangles are not sampled.
 constexpr std::uint32_t kLeastSampled = 4096;
 // The position of item k of a sample, in [0, 1). Multiples of the golden ratio are as even as a
-// grid, but have no period; surfaces often have one.
+// grid, but have no period, as many surfaces have.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
@@ -110,32 +107,6 @@ void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
   for (std::uint32_t k = blocks.first[object]; k < blocks.first[object + 1]; ++k)
     blocks.objects[object].add(blocks.boxes[k]);
 }
-
-}  // namespace
-
-TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads) {
-  TriangleBlocks out;
-  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
-  out.first.resize(objects + 1, 0);
-  for (std::size_t o = 0; o < objects; ++o) {
-    const Object& object = scene.objects[o];
-    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
-      out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
-    out.first[o + 1] = static_cast<std::uint32_t>(out.ranges.size());
-  }
-  const double half = half_of(clearance);
-  const std::size_t n = out.ranges.size();
-  out.boxes.resize(n);
-  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) out.boxes[k] = block_box(scene, out.ranges[k], half);
-  });
-  out.objects.resize(objects);
-  for (std::uint32_t o = 0; o < objects; ++o) add_boxes(out, o);
-  mark_stretched(scene, half, out);
-  return out;
-}
-
-namespace {
 
 // Four numbers at once, which the compiler computes on lanes.
 using Four = std::array<std::uint32_t, 4>;
@@ -262,9 +233,8 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
     inside[chunk] = std::move(in);
     outside[chunk] = std::move(out);
   });
-  for (std::size_t k = 1; k < chunks; ++k) {
+  for (std::size_t k = 1; k < chunks; ++k)
     inside[0].insert(inside[0].end(), inside[k].begin(), inside[k].end());
-  }
   const bool sized = std::ranges::any_of(
       inside[0], [&](const Coded& coded) { return (coded.code >> grid.bits()) != 0; });
   sort_by_code(inside[0], grid.bits() + (sized ? 2 : 0));
@@ -291,6 +261,28 @@ bool is_near(const Vec3& from, const Box& box) {
 }
 
 }  // namespace
+
+TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads) {
+  TriangleBlocks out;
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+  out.first.resize(objects + 1, 0);
+  for (std::size_t o = 0; o < objects; ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
+      out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
+    out.first[o + 1] = static_cast<std::uint32_t>(out.ranges.size());
+  }
+  const double half = half_of(clearance);
+  const std::size_t n = out.ranges.size();
+  out.boxes.resize(n);
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) out.boxes[k] = block_box(scene, out.ranges[k], half);
+  });
+  out.objects.resize(objects);
+  for (std::uint32_t o = 0; o < objects; ++o) add_boxes(out, o);
+  mark_stretched(scene, half, out);
+  return out;
+}
 
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, TriangleBlocks& blocks) {
@@ -368,7 +360,8 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
       return;
     }
     for (std::uint32_t i = 0; i < range.count; ++i)
-      prefetch(scene, order[std::min<std::size_t>(range.first + kAhead + i, order.size() - 1)]);
+      prefetch(scene,
+               order[std::min<std::size_t>(range.first + kTrianglesAhead + i, order.size() - 1)]);
     BlockLanes& lanes = blocks.lanes[blocks.gathered[object].first + k - blocks.first[object]];
     blocks.boxes[k] =
         grow(fill_lanes(scene, order.subspan(range.first, range.count), half, blocks.origin, lanes),

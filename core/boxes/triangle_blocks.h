@@ -3,7 +3,6 @@
 // are sorted first, so that those of a block are close, and large ones are in blocks of their own.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

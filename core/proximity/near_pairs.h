@@ -34,9 +34,9 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// The nearest of some pairs of triangles, decided exactly; among several, the first. It proves
-/// that others are no nearer: triangles s of the first object and t of the second are at least as
-/// far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
+/// The nearest of some pairs of triangles, decided exactly; of several nearest ones, the first. It
+/// also proves that other pairs are no nearer: triangles s of the first object and t of the second
+/// are at least as far apart if reach(s) <= start(t), and farther if reach(s) < start(t).
 struct SettledPair {
   TrianglePair pair;
   double distance = 0;  // world units, not below the exact one; 0 only if the triangles meet
@@ -79,8 +79,6 @@ class ProximityTrees {
   /// searches call it when many pairs may be nearest, and replace these by the settled pair.
   explicit ProximityTrees(const Scene& scene, unsigned threads = 0, Settle settle = {});
   ~ProximityTrees();
-  ProximityTrees(ProximityTrees&&) noexcept;
-  ProximityTrees& operator=(ProximityTrees&&) noexcept;
 
   /// Answers each question, in their order. within: world units, >= 0, may be infinite: pairs that
   /// are farther apart need not be found. hints: empty, or one for each question: a pair of

@@ -31,8 +31,8 @@ double square_of_gap(const Box& a, const Box& b) {
   return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
 }
 
-// Gives the objects, also this one, in the order of the least gap between a part of the object and
-// a part of this one; of objects with the same gap the one with the lower number first. All numbers
+// Gives all objects, this one included, in the order of the least gap between their parts and the
+// parts of this object. At equal gaps, the object with the lower number comes first. All numbers
 // are in scaled units (core/proximity/scene_trees.h).
 class Approach {
  public:
@@ -89,16 +89,6 @@ struct Found {
   double limit = 0;  // of the search
   NearPairs near;
 };
-
-// The searches that hints begin, sorted by objects.
-std::vector<Search> begun_by_hints(const SceneTrees& trees, std::span<const NearHint> hints,
-                                   double limit, SearchMemory& memory) {
-  std::vector<Search> out;
-  out.reserve(hints.size());
-  for (const NearHint& hint : hints)
-    out.push_back(begin_search(trees, hint.objects, limit, &hint.triangles, memory));
-  return out;
-}
 
 void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
   while (!search.open.empty()) {
@@ -188,17 +178,19 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
   return out;
 }
 
-// The others that may be among the k nearest of an object. crowd: null if the object searches with
-// one other after the other.
-// hints: those that name the object, sorted. all: also others that are as near as the k-th and have
-// higher numbers.
+// The others that may be among the k nearest of an object. crowd: null if the object is compared
+// with one other after the other. hints: those that name the object, sorted. all: includes others
+// that are as near as the k-th and have higher numbers.
 std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,
                             std::size_t k, double limit, std::span<const NearHint> hints, bool all,
                             NearestMemory& both, ProximityCounts& counts) {
   SearchMemory& memory = both.of_two;
   std::vector<Found> out;
-  std::vector<Search> begun = begun_by_hints(trees, hints, limit, memory);
-  for (const Search& search : begun) counts.triangle_pairs += search.counts.triangle_pairs;
+  std::vector<Search> begun;  // by hints; sorted by objects
+  for (const NearHint& hint : hints) {
+    begun.push_back(begin_search(trees, hint.objects, limit, &hint.triangles, memory));
+    counts.triangle_pairs += begun.back().counts.triangle_pairs;
+  }
   limit = std::min(limit, kth_least_upper(begun, k));
   std::vector<double> least;  // the k least upper bounds, as a heap
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
@@ -280,8 +272,8 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
     std::ranges::move(found[o], std::back_inserter(founds));
   }
   // Two objects may each have found the other; then the answer with the larger limit is kept. An
-  // answer has all nearest pairs if their distance is within its limit. That is so for at least one
-  // of the two answers, hence for the one with the larger limit.
+  // answer has all nearest pairs if their distance is within its limit. That holds for at least one
+  // of the two answers, so it holds for the one with the larger limit.
   std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;
@@ -377,6 +369,27 @@ std::vector<ObjectPair> objects_within(const SceneTrees& trees, double limit, st
   return out;
 }
 
+void check(const Scene& scene, std::span<const ObjectPair> questions, double within,
+           std::size_t hints) {
+  if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
+  if (hints != 0 && hints != questions.size())
+    throw std::logic_error("near_pairs: as many hints as questions, or none");
+  for (const ObjectPair& q : questions) {
+    if (q.a > q.b || q.b >= scene.objects.size())
+      throw std::logic_error("near_pairs: no such pair of objects");
+  }
+}
+
+bool has(const Object& object, std::uint32_t triangle) {
+  return triangle >= object.first_triangle &&
+         triangle - object.first_triangle < object.triangle_count;
+}
+// Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
+bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
+  return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
+         has(scene.objects[objects.b], hint.b);
+}
+
 }  // namespace
 
 Error too_many_within(std::size_t most, const std::string& what) {
@@ -407,33 +420,6 @@ struct ProximityTrees::State {
 ProximityTrees::ProximityTrees(const Scene& scene, unsigned threads, Settle settle)
     : state_(std::make_unique<State>(scene, threads, std::move(settle))) {}
 ProximityTrees::~ProximityTrees() = default;
-ProximityTrees::ProximityTrees(ProximityTrees&&) noexcept = default;
-ProximityTrees& ProximityTrees::operator=(ProximityTrees&&) noexcept = default;
-
-namespace {
-
-void check(const Scene& scene, std::span<const ObjectPair> questions, double within,
-           std::size_t hints) {
-  if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
-  if (hints != 0 && hints != questions.size())
-    throw std::logic_error("near_pairs: as many hints as questions, or none");
-  for (const ObjectPair& q : questions) {
-    if (q.a > q.b || q.b >= scene.objects.size())
-      throw std::logic_error("near_pairs: no such pair of objects");
-  }
-}
-
-bool has(const Object& object, std::uint32_t triangle) {
-  return triangle >= object.first_triangle &&
-         triangle - object.first_triangle < object.triangle_count;
-}
-// Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
-bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
-  return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
-         has(scene.objects[objects.b], hint.b);
-}
-
-}  // namespace
 
 std::vector<NearPairs> ProximityTrees::near_pairs(
     std::span<const ObjectPair> questions, double within,

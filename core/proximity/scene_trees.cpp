@@ -1,12 +1,13 @@
-// Blocks come from core/boxes/triangle_blocks.h. The blocks of each object are sorted so that
-// sixteen consecutive ones lie together, too.
+// Makes the trees from blocks of core/boxes/triangle_blocks.h, sorted so that sixteen consecutive
+// blocks lie together, too. Divides long searches into a fixed number of parts. The parts begin
+// with the same bound and share no results. After a while they are joined, and the rest is divided
+// again.
 #include "core/proximity/scene_trees.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <string>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace farcull {
@@ -39,7 +40,7 @@ void SceneTrees::make_trees(unsigned threads) {
   least_.resize(blocks);
   trees_.resize(objects);
   place_.resize(of_.ranges.size());
-  const auto make = [&](std::size_t o) {
+  for_each_shared(objects, threads, [&](std::size_t o) {
     const std::uint32_t from = of_.first[o], n = of_.count(static_cast<std::uint32_t>(o));
     const auto place = std::span(place_).subspan(from, n);
     spatial_order(std::span(of_.boxes).subspan(from, n), place);
@@ -50,11 +51,7 @@ void SceneTrees::make_trees(unsigned threads) {
     }
     trees_[o] = make_tree<double>(leaves, blocks_, first[o]);
     find_least(static_cast<std::uint32_t>(o));
-  };
-  for_chunks(objects, chunks_for(objects, 1, threads),
-             [&](std::size_t, std::size_t begin, std::size_t end) {
-               for (std::size_t o = begin; o < end; ++o) make(o);
-             });
+  });
 }
 
 void SceneTrees::find_least(std::uint32_t object) {
@@ -187,17 +184,6 @@ Reaches::Reaches(const SceneTrees& trees, std::uint32_t object,
   }
 }
 
-namespace {
-
-// Fetches memory into the cache, for a use that follows soon.
-void fetch([[maybe_unused]] const void* at) {
-#ifdef __GNUC__
-  __builtin_prefetch(at);
-#endif
-}
-
-}  // namespace
-
 void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
   const Scene& scene = trees.scene();
   out.leaf = leaf;
@@ -206,7 +192,7 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
   // Triangles and their corners may lie anywhere in memory.
   for (std::uint32_t k = 0; k < kWide; ++k) {
     out.triangle[k] = trees.triangle(leaf, std::min(k, out.count - 1));
-    fetch(&scene.triangles[out.triangle[k]]);
+    __builtin_prefetch(&scene.triangles[out.triangle[k]]);
   }
   for (const std::uint32_t triangle : out.triangle) prefetch(scene, triangle);
   for (std::uint32_t k = 0; k < kWide; ++k) {
@@ -239,6 +225,142 @@ bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b) {
     }
   }
   return false;
+}
+
+// ---- searches in parallel ----
+
+void Others::add(const TrianglePair& pair, double bound) {
+  if (bound > upper()) return;
+  const std::uint32_t other = other_of(pair);
+  const auto same = std::ranges::find(nearest, other, &std::pair<double, std::uint32_t>::second);
+  if (same != nearest.end()) {
+    if (same->first <= bound) return;
+    nearest.erase(same);
+  }
+  const std::pair entry(bound, other);
+  nearest.insert(std::ranges::lower_bound(nearest, entry), entry);
+  if (nearest.size() > k) nearest.pop_back();
+  if (!ties && upper() == 0) {
+    const Object& last = scene.objects[nearest.back().second];
+    end = last.first_triangle + last.triangle_count;
+  }
+}
+
+void settle(const SceneTrees& trees, Search& search) {
+  if (!trees.settle()) return;
+  std::vector<TrianglePair> pairs;
+  pairs.reserve(search.kept.size());
+  for (const KeptPair& kept : search.kept) pairs.push_back(kept.pair);
+  std::ranges::sort(pairs);
+  const SettledPair settled = trees.settle()(pairs);
+  KeptPair kept = *std::ranges::find(search.kept, settled.pair, &KeptPair::pair);
+  kept.upper =
+      std::min(kept.upper, settled.distance == 0 ? 0 : scaled_limit(trees, settled.distance));
+  search.upper = std::min(search.upper, kept.upper);
+  search.kept.assign(1, kept);
+  search.settled = settled.pair;
+  if (settled.distance == 0) {
+    search.first = std::min(search.first, settled.pair);
+  } else if (!search.is_part && (!search.planes || search.planes->pair != settled.pair)) {
+    const auto back = [&](std::uint32_t triangle) { return -settled.start(triangle); };
+    search.planes = std::make_shared<const Planes>(
+        Planes{settled.pair, Reaches(trees, search.objects.a, settled.reach),
+               Reaches(trees, search.objects.b, back)});
+  }
+}
+
+void Search::filter() {
+  std::erase_if(kept, [this, most = bound()](const KeptPair& k) {
+    return k.lower > most || is_behind(k.pair);
+  });
+}
+
+namespace {
+
+constexpr std::size_t kParts = 32;
+
+// Deals the open pairs out to new searches, which begin with the bound of this one.
+std::vector<Search> divide(Search& search) {
+  std::vector<Search> out(std::min(kParts, search.open.size()));
+  for (Search& part : out) {
+    part.objects = search.objects;
+    part.limit = search.limit;
+    part.upper = search.upper;
+    part.first = search.first;
+    part.direction = search.direction;
+    part.settled = search.settled;
+    part.planes = search.planes;
+    part.is_part = true;
+    const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
+    if (settled != search.kept.end()) part.kept.push_back(*settled);
+  }
+  // The last open pair is examined first, also in each part: the order is kept.
+  const std::size_t n = search.open.size();
+  for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
+  search.open.clear();
+  return out;
+}
+
+// Adds the pairs that a part found or left open to the search that it came from.
+void join(Search& part, Search& search) {
+  if (part.upper < search.upper) {
+    search.upper = part.upper;
+    search.direction = part.direction;
+  }
+  search.first = std::min(search.first, part.first);
+  search.open.insert(search.open.end(), part.open.begin(), part.open.end());
+  for (const KeptPair& kept : part.kept) {
+    if (kept.pair != search.settled) search.kept.push_back(kept);
+  }
+  search.counts.add_work(part.counts);
+  part = Search();
+}
+
+}  // namespace
+
+double scaled_limit(const SceneTrees& trees, double within) {
+  // A subnormal product is rounded, but the next larger number is at least the exact product.
+  return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
+}
+
+void require_room(const SceneTrees& trees, const Search& search, std::size_t most) {
+  if (search.kept.size() <= most) return;
+  throw Error(trees.scene().name,
+              "more than " + std::to_string(most) + " pairs of triangles of the objects " +
+                  std::to_string(search.objects.a) + " and " + std::to_string(search.objects.b) +
+                  " may be nearest",
+              "leave one of the objects out, or drop triangles that are there twice");
+}
+
+void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search, std::size_t most) {
+  while (!search.open.empty()) {
+    std::vector<Search> parts = divide(search);
+    for_each_with_memory<SearchMemory>(parts.size(), threads,
+                                       [&](std::size_t k, SearchMemory& memory) {
+                                         go_on(trees, kLeafPairsAtOnce, parts[k], memory);
+                                       });
+    for (Search& part : parts) join(part, search);
+    search.filter();
+    if (2 * search.kept.size() > search.kept_most) settle(trees, search);
+    require_room(trees, search, most);
+  }
+}
+
+NearPairs answer(const SceneTrees& trees, Search& search) {
+  search.filter();
+  search.counts.kept = search.kept.size();
+  NearPairs out;
+  out.objects = search.objects;
+  double upper = std::numeric_limits<double>::infinity();
+  out.pairs.reserve(search.kept.size());
+  for (const KeptPair& k : search.kept) {
+    out.pairs.push_back(k.pair);
+    upper = std::min(upper, k.upper);
+  }
+  std::ranges::sort(out.pairs);
+  // A subnormal quotient is rounded, but the next larger number is at least the exact quotient.
+  out.upper = std::nextafter(upper / trees.scale(), std::numeric_limits<double>::infinity());
+  return out;
 }
 
 }  // namespace farcull

@@ -23,45 +23,46 @@
 
 namespace farcull::near {
 
-// Errors of the arithmetic that finds near pairs: derivations, and the constants that follow.
+// Rounding errors of the arithmetic that finds near pairs, and the constants that bound them.
 //
-// u = 2^-53. All coordinates are scaled (SceneTrees): |x| < 4, and x is off by at most 2^-1075 from
-// the given coordinate times the scale. "Exact" refers to the given coordinates times the scale.
-// Bounds of a distance are in these units.
+// u = 2^-53. All coordinates are scaled (SceneTrees): |x| < 4, and scaling errs by at most 2^-1075.
+// "Exact" means: for the given coordinates times the scale. Bounds of a distance are in these
+// units.
 //
-// Gaps of boxes. Along an axis, the gap is g = fl(lo - hi) if that is positive. A difference has no
-// error of underflow, so g <= (G + 2^-1074) (1 + u) with the exact gap G < 8. The sum of the
-// squares has at most three more roundings, and products below 2^-1022 are off by 2^-1075. So the
-// sum is at most (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. square_limit() computes P^2 (1 + 16 u)
-// + 2^-900 with three roundings, so it is at least P^2 (1 + 12 u) + 2^-901. If the sum is above it,
-// the exact distance is above P.
+// Gaps of boxes. Along an axis, the computed gap is g = fl(lo - hi) if that is positive. A
+// difference does not underflow, so g <= (G + 2^-1074) (1 + u), where G < 8 is the exact gap. The
+// sum of squares has at most three more roundings, and a product below 2^-1022 errs by 2^-1075. So
+// the sum is at most (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. square_limit() computes P^2 (1 +
+// 16 u) + 2^-900 with three roundings, so it returns at least P^2 (1 + 12 u) + 2^-901. If the sum
+// is above that, the exact distance is above P.
 //
 // Gaps along a direction d, any vector with components in [-16, 16]. Points are taken relative to
-// an origin: x = fl(point - origin) is off by u |x|. A dot product d.x has three products and two
-// sums: with the error of x, it is off by less than 5 u |d|.|x| (absolute values per axis). The
-// difference of two has one rounding more, of 2 u |d|.|x|: 12 u |d|.X in all, with X the largest
-// |x| per axis. kGap is 16 u, which also covers the roundings of kGap |d|.X. The distance is at
-// least the gap over the length of d.
+// an origin: x = fl(point - origin) errs by u |x|. A dot product d.x has three products and two
+// sums. With the error of x, it errs by less than 5 u |d|.|x| (absolute values per axis). The
+// difference of two dot products adds a rounding of 2 u |d|.|x|. With X the largest |x| per axis,
+// that is 12 u |d|.X in all. kGap is 16 u, which also covers the roundings of kGap |d|.X. The
+// distance is at least the gap divided by the length of d.
 //
-// Points. p and q are weighted sums of the corners of a triangle each, relative to a corner of the
-// first triangle; R is the largest |coordinate| of these. The computed weights are in [0, 1] and
-// sum to 1 up to 4 u. Per axis, p is off a point of its triangle by at most u R (1 + 4 u)
-// (differences) + 3 u R (products and sums) + 4 u R (weights, compared with those divided by their
-// sum) < 9 u R; so is q. Their difference has one rounding of 2 u R: its error is below 20.1 u R
-// per axis, 35 u R in length. The computed length is below 4 R and off by less than 3 u of itself,
-// and two sums follow: 20 u R. In all 55 u R; kPoint is 64 u.
+// Points. The points p and q are weighted sums of the corners of one triangle each, relative to a
+// corner of the first triangle. R is the largest |coordinate| of these corners. The computed
+// weights are in [0, 1] and sum to 1 up to 4 u. Per axis, p differs from a point of its triangle by
+// at most u R (1 + 4 u) (differences) + 3 u R (products and sums) + 4 u R (weights, compared with
+// weights that sum to 1) < 9 u R. The same holds for q. Their difference has one rounding of 2 u R,
+// so it errs by less than 20.1 u R per axis, or 35 u R in length. The computed length is below 4 R
+// and errs by less than 3 u of itself, and two sums follow: 20 u R. That is 55 u R in all; kPoint
+// is 64 u.
 //
 // Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on
-// opposite sides of its plane, and the edge passes all three of its sides in the same sense. The
-// signs of five determinants of differences of points decide that. A difference is off by u of
-// itself. Then each of the six products of three is within (1 + u)^8 of the exact one, two sums
-// included, so a determinant is off by less than 8.1 u of the sum of the products' magnitudes.
-// kDeterminant is 16 u, which also covers the roundings of that sum. Then the triangles share a
+// opposite sides of its plane, and the edge passes the triangle's three sides in the same sense.
+// The signs of five determinants of differences of points decide both. A difference errs by u of
+// itself. So each of the six products of three is within (1 + u)^8 of the exact one, with two sums.
+// A determinant errs by less than 8.1 u of the sum of the products' magnitudes. kDeterminant is 16
+// u, which also covers the roundings of that sum. If all signs are certain, the triangles share a
 // point, and 0 is an upper bound.
 //
-// Underflow: a product is off by at most 2^-1075, so the square of a length loses nothing by it if
-// it is above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives
-// no direction. All other losses by underflow are far below kAbsolute.
+// Underflow. A product errs by at most 2^-1075. That is lost in the rounding of a squared length
+// above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives no
+// direction. All other losses by underflow are far below kAbsolute.
 
 constexpr double kUnit = 0x1p-53;
 constexpr double kPoint = 64 * kUnit;
@@ -78,8 +79,8 @@ inline double square_limit(double limit) {
   return square < kMostSquare ? square : kMostSquare;
 }
 
-/// Points farther apart than this along a direction are farther apart than `limit`.
-/// squared: the square of the direction's length; doubt: kGap |d|.X.
+/// Points farther apart than this along a direction are farther apart than `limit`. squared: the
+/// square of the direction's length. doubt: kGap |d|.X.
 inline double gap_limit(double limit, double squared, double doubt) {
   // The root is off by less than 3 u of itself.
   return limit * (std::sqrt(squared) * (1 + 8 * kUnit)) * (1 + 4 * kUnit) + doubt + kAbsolute;
@@ -164,8 +165,7 @@ struct alignas(64) PairBatch {
 };
 
 /// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units. If
-/// upper is 0, they certainly meet.
-/// direction: from about the closest point of a to that of b.
+/// upper is 0, they certainly meet. direction: roughly from the closest point of a to that of b.
 struct alignas(64) BatchBounds {
   std::array<double, kWide> lower, upper;
   std::array<std::array<double, kWide>, 3> direction;
@@ -219,10 +219,10 @@ struct Planes {
   Reaches b;          // the starts of the triangles of objects.b, negated
 };
 
-/// For a search for the nearest other objects of one object. It compares the object with all
-/// triangles of the scene at once: they are one object of other trees, which have the same scale. A
-/// search of two objects takes as long as some hundred pairs of triangles, so this is faster if
-/// many small objects overlap.
+/// State of a search for the nearest other objects of one object. The search compares the object
+/// with all triangles of the scene at once; the trees `all` hold these as one object, at the same
+/// scale. Searching two objects takes as long as bounding some hundred pairs of triangles, so a
+/// single search is faster if many small objects overlap.
 struct Others {
   const SceneTrees* all;
   const Scene& scene;
@@ -230,8 +230,7 @@ struct Others {
   std::uint32_t object;                  // the one whose nearest others are searched for
   std::size_t k;                         // how many others are asked for
   bool ties;  // keep also others that are as near as the k-th but have higher numbers
-  /// Triangles from here on need no search: k others with lower numbers certainly meet the
-  /// object.
+  /// Triangles from here on need no search: k others with lower numbers certainly meet the object.
   std::uint32_t end = UINT32_MAX;
   /// The k least upper bounds, each of another object, sorted; among equal ones the lower numbers.
   std::vector<std::pair<double, std::uint32_t>> nearest = {};
@@ -261,7 +260,7 @@ struct Search {
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
   /// The pair that the latest settle() chose, the first of the nearest ones; one of the kept pairs.
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
-  std::shared_ptr<const Planes> planes;  // of this pair, or of an earlier, no nearer one
+  std::shared_ptr<const Planes> planes;  // of `settled`, or of an earlier one that is no nearer
   bool is_part = false;                  // of a search that was divided; makes no planes
   Vec3 direction = Vec3::Zero();         // of a pair with about the bound `upper`; 0: none
   std::vector<NodePair> open;            // to be examined, the last one first
@@ -293,8 +292,8 @@ class SearchMemory {
 /// Begins a search. hint: null, or a pair of triangles that may be near.
 Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
                     const TrianglePair* hint, SearchMemory& memory);
-/// Begins a search for the nearest others of an object that has triangles. The search keeps all
-/// pairs whose other object can be among these.
+/// Begins a search for the nearest others of an object that has triangles. It keeps all pairs whose
+/// other object can be among these.
 Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
                     SearchMemory& memory);
 /// Continues until no pair of nodes is open, or until `most` pairs of leaves were examined.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "core/boxes/lanes-inl.h"
@@ -283,9 +282,9 @@ class Searcher {
     }
   }
 
-  // Of the triangles `bits` of a leaf, those not shown to be farther from triangle i of `own` than
-  // the bound. Any direction gives a valid bound, so errors of a computed normal do no harm
-  // (core/proximity/scene_trees.h). Components are scaled to at most 16.
+  // Returns those of the triangles `bits` of a leaf that no direction shows to be farther from
+  // triangle i of `own` than the bound. Any direction gives a valid bound, so errors of a computed
+  // normal do no harm (core/proximity/scene_trees.h). Components are scaled to at most 16.
   HWY_INLINE std::uint32_t near_triangle(const BlockCorners& own, std::size_t i,
                                          const BlockCorners& leaf, std::uint32_t bits) const {
     std::array<Vec3, 3> corners;

@@ -1,11 +1,9 @@
 // Puts pairs into buckets by their first triangle, and sorts or marks the partners in each bucket.
 #include "core/scene/pair_sort.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <iterator>
-#include <utility>
 
 #include "core/base/parallel.h"
 

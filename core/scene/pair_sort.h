@@ -1,7 +1,6 @@
 // Collects pairs (a, b) of triangle indices, in bounded memory even if many repeat, and sorts them.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <mutex>

@@ -1,8 +1,6 @@
 // Checks scenes; computes boxes, owners and fingerprints; drops ignored pairs; finds moved corners.
 #include "core/scene/scene.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -34,12 +32,12 @@ bool overlap(const Box& a, const Box& b) {
   return !intersection(a, b).is_empty();  // so a box that is empty along one axis meets nothing
 }
 
-Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }
-
-std::array<Vec3, 3> Scene::corners(std::uint32_t triangle) const {
-  const auto& t = triangles[triangle];
-  return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+bool lies_within(const Box& inner, const Box& outer) {
+  return (inner.lo.array() >= outer.lo.array()).all() &&
+         (inner.hi.array() <= outer.hi.array()).all();
 }
+
+Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }
 
 void validate(const Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
@@ -116,9 +114,8 @@ std::vector<std::uint32_t> owners(const Scene& scene) {
 std::string scene_hash(const Scene& scene) {
   Fnv1a hash;
   hash.add(std::uint64_t{scene.objects.size()});
-  for (const Object& object : scene.objects) {
+  for (const Object& object : scene.objects)
     hash.add(object.triangle_count | std::uint64_t{object.self} << 32);
-  }
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     for (const Vec3& p : scene.corners(t)) {
       for (int i = 0; i < 3; ++i) hash.add(std::bit_cast<std::uint64_t>(p[i]));
@@ -234,9 +231,8 @@ FrameChange MovedCorners::compare(const Scene& scene) {
   FrameChange out;
   std::vector<Part> objects;
   objects.reserve(scene.objects.size());
-  for (const Object& o : scene.objects) {
+  for (const Object& o : scene.objects)
     objects.push_back({o.first_triangle, o.triangle_count, o.self});
-  }
   const std::size_t n = scene.vertices.size();
   out.same = copy && copy->vertices.size() == n && copy->objects == objects &&
              copy->triangles == scene.triangles;

@@ -29,6 +29,8 @@ struct Box {
 
 /// True iff the closed boxes share a point (touching counts). Exact: it only compares doubles.
 bool overlap(const Box& a, const Box& b);
+/// True iff `outer` contains all of `inner`.
+bool lies_within(const Box& inner, const Box& outer);
 /// The common part of two boxes; empty if they do not overlap.
 Box intersection(const Box& a, const Box& b);
 
@@ -58,27 +60,28 @@ struct FoldedFace {
 struct Scene {
   std::string name;
   std::vector<Vec3> vertices;  // finite
-  std::vector<std::array<std::uint32_t, 3>>
-      triangles;  // indices into vertices; degenerate ones are kept
-  std::vector<std::uint32_t>
-      source_face;  // per triangle: 0-based face of its file before triangulation
+  /// Indices into vertices; degenerate triangles are kept.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> source_face;  // per triangle: its polygon in the file, from 0
   std::vector<Object> objects;
-  std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
-                                         // in_order() gives them
+  std::vector<ObjectPair> ignored = {};  // not tested against each other; as in_order() gives them
   std::vector<FoldedFace> folded = {};   // polygons to warn of; sorted
 
-  std::array<Vec3, 3> corners(std::uint32_t triangle) const;
+  std::array<Vec3, 3> corners(std::uint32_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {vertices[a], vertices[b], vertices[c]};
+  }
 };
 
-/// Fetches the corners of a triangle into the cache before they are used. They may lie anywhere in
-/// memory.
+/// Fetches the corners of a triangle into the cache. They may lie anywhere in memory.
 inline void prefetch([[maybe_unused]] const Scene& scene, [[maybe_unused]] std::uint32_t triangle) {
 #ifdef __GNUC__
-  for (const std::uint32_t v : scene.triangles[triangle]) {
+  for (const std::uint32_t v : scene.triangles[triangle])
     __builtin_prefetch(scene.vertices[v].data());
-  }
 #endif
 }
+/// Loops over triangles in order prefetch corners this many triangles ahead.
+inline constexpr std::uint32_t kTrianglesAhead = 16;
 
 /// A pair of triangles of a scene, a < b, as global triangle indices.
 struct TrianglePair {
@@ -91,13 +94,12 @@ struct TrianglePair {
 inline bool share_index(const std::array<std::uint32_t, 3>& a,
                         const std::array<std::uint32_t, 3>& b) {
   bool shared = false;
-  for (const std::uint32_t v : a) {
+  for (const std::uint32_t v : a)
     shared = static_cast<bool>(shared | (v == b[0]) | (v == b[1]) | (v == b[2]));
-  }
   return shared;
 }
 
-/// The range of vertices that an object with triangles uses. Ranges seldom overlap.
+/// The range of vertices that an object with triangles uses. Ranges of two objects seldom overlap.
 struct VertexRange {
   std::uint32_t first = 0, last = 0;
 };

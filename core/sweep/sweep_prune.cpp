@@ -50,10 +50,21 @@ bool meet(const Box& a, const Box& b) {
          b.lo.y() <= a.hi.y() && a.lo.z() <= b.hi.z() && b.lo.z() <= a.hi.z();
 }
 
-void sort_each_once(std::vector<TrianglePair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-}
+/// The state of a triangle.
+enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
+
+/// Marks a group of one: each triangle of a `self` object is a group of its own.
+constexpr std::uint32_t kAlone = 1u << 31;
+
+constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
+
+/// A lower end to sort by, and the index of the item or triangle that it is of.
+struct Key {
+  double lo;
+  std::uint32_t index;
+};
+
+bool less(const Key& a, const Key& b) { return a.lo < b.lo; }
 
 }  // namespace
 
@@ -62,12 +73,12 @@ bool BoxSweep::before(const End& e, const End& f) {
   return e.value < f.value || (e.value == f.value && (e.box_and_side & 1) < (f.box_and_side & 1));
 }
 
-// Why the pairs are right after an update: along one axis, two boxes that are not empty overlap iff
-// each lower end stands before the upper end of the other. That includes equal coordinates, where
-// lower ends come first. Insertion sort exchanges two ends iff their order changed. If a pair came
-// to overlap, it was apart along some axis, and there a lower end of one passed an upper end of the
-// other. If it came apart, an upper end passed a lower one along some axis. The boxes themselves
-// show whether the pair overlapped before and does now.
+// Why the pairs are right after an update. Along one axis, two boxes that are not empty overlap iff
+// each lower end stands before the other's upper end; at equal coordinates lower ends stand first.
+// Insertion sort exchanges two ends iff their order changed. If two boxes come to overlap, they
+// were apart along some axis, and there a lower end of one passes an upper end of the other. If
+// they come apart, an upper end passes a lower one. Each such exchange compares the boxes, as they
+// were and as they are.
 const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   swaps_ = 0;
   std::vector<std::uint32_t> present;
@@ -84,8 +95,8 @@ const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   if (from_scratch_) {
     start(boxes);
   } else {
-    sort_each_once(appeared_);
-    sort_each_once(vanished_);
+    appeared_ = sorted_unique({&appeared_, 1}, 1);
+    vanished_ = sorted_unique({&vanished_, 1}, 1);
     std::vector<TrianglePair> stay, all;
     std::set_difference(pairs_.begin(), pairs_.end(), vanished_.begin(), vanished_.end(),
                         std::back_inserter(stay));
@@ -131,33 +142,6 @@ bool BoxSweep::sort_axis(int axis, std::span<const Box> boxes) {
     }
   });
 }
-
-void BoxSweep::forget() {
-  present_.clear();
-  boxes_.clear();
-  pairs_.clear();
-  for (auto& ends : ends_) ends.clear();
-}
-
-namespace {
-
-/// The state of a triangle.
-enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
-
-/// Marks a group of one: each triangle of a `self` object is a group of its own.
-constexpr std::uint32_t kAlone = 1u << 31;
-
-constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
-
-/// A lower end to sort by, and the index of the item or triangle that it is of.
-struct Key {
-  double lo;
-  std::uint32_t index;
-};
-
-bool less(const Key& a, const Key& b) { return a.lo < b.lo; }
-
-}  // namespace
 
 SweepPruneResult SweepPrune::find(const Scene& scene) { return find(scene, triangle_boxes(scene)); }
 
@@ -385,7 +369,7 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   return pairs;
 }
 
-/// Sorts the triangles in order_ by the lower ends of this call's boxes, for the calls to come.
+/// Sorts the triangles in order_ by the lower ends of the current boxes, for later calls.
 void SweepPrune::sort_order() {
   std::vector<Key> keys;
   keys.reserve(items_.size());

@@ -38,7 +38,7 @@ class BoxSweep {
   /// True if the last call sorted the lists from scratch.
   bool sorted_from_scratch() const { return from_scratch_; }
   /// Makes the next call start as the first one did.
-  void forget();
+  void forget() { *this = BoxSweep(); }
 
  private:
   struct End {
@@ -121,7 +121,7 @@ class SweepPrune {
 
   BoxSweep objects_;
   std::array<int, 3> axes_ = {0, 1, 2};  // the axis of the sweep of triangles, then the others
-  // The survivors of the last call, in the order along axes_[0] as it was last sorted.
+  // The survivors of the last call, in the order along axes_[0] of the last sort.
   std::vector<std::uint32_t> order_;
 
   // Values of the running call. They are members so that their memory is reused.

@@ -1,12 +1,11 @@
-// Visits the blocks of cells level by level. Each block has the triangles that can matter to a cell
-// in it, and passes on those that can still matter to its parts. A level reads only what the levels
-// above it found, so the answer does not depend on the number of threads. Only for the two forms
+// Visits the blocks of cells level by level. Each block has the triangles that can matter to its
+// cells, and passes on those that can still matter to its parts. A level reads only results of the
+// levels above it, so the answer does not depend on the number of threads. Only for the two forms
 // of the diagram (voronoi.h).
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -76,7 +75,7 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   }
 }
 
-// An object near a point: the least bounds and the least computed distance of its triangles.
+// An object near a point: the least bounds and the least computed distance over its triangles.
 struct Near {
   std::uint32_t object;
   float computed, lower, upper;
@@ -132,12 +131,6 @@ inline void require(const VoronoiOptions& options) {
   }
   if (!(options.widening >= 0 && options.widening <= 1))
     throw Error("widening", "is not in 0 to 1", "leave it at 1, which the proof asks for");
-}
-
-/// Sorts the pairs and removes repeats.
-inline void sort_each_once(std::vector<ObjectPair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
 inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {

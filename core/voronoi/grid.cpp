@@ -1,19 +1,14 @@
 // The grid of the diagram, and triangles on it.
 #include <algorithm>
 #include <limits>
-#include <string>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/voronoi/voronoi.h"
 
 namespace farcull {
-
-// The box of the triangles, scaled by a power of two so that no difference overflows or is
-// subnormal, and divided into cubes. All roundings of the grid itself go outward.
-
 namespace {
 
+// All roundings of the grid go outward.
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double up(double x) { return std::nextafter(x, kInfinite); }

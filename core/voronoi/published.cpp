@@ -9,8 +9,8 @@ namespace farcull {
 namespace voronoi {
 namespace {
 
-// True if one object is nearer than another one to every point of a block. The test stays sharp if
-// both are far away, unlike a comparison of distances from the middle of the block.
+// True if one object is nearer than another one to every point of a block. Unlike a comparison of
+// distances from the middle of the block, the test stays sharp if both objects are far away.
 //
 // Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
 // square of the distance from v is less than that from T everywhere if one of two upper bounds of
@@ -89,10 +89,10 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
   return out;
 }
 
-// True only if at every point of the block the exact and the computed distance from `corner`
+// True only if, at every point of the block, the exact and the computed distance from `corner`
 // (nearest_corner() of an object) are less than those from all triangles `ids` of another object.
-// The margin for the squares is the sum of two distances, each at most 1.74 N, times the errors of
-// both. The double arithmetic here errs by far less.
+// The margin is for differences of squares: the sum of the two distances, each at most 1.74 N,
+// times the sum of their errors. The double arithmetic here errs by far less.
 bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
                const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
   const double margin =
@@ -145,10 +145,7 @@ class Published {
     add_parts(block, kept, below);
   }
 
-  void add(const Found& found) {
-    pairs_.insert(pairs_.end(), found.begin(), found.end());
-    sort_each_once(pairs_);
-  }
+  void add(const Found& found) { pairs_ = in_order(std::move(pairs_), found); }
   std::vector<ObjectPair> take() { return std::move(pairs_); }
 
  private:
@@ -168,16 +165,16 @@ class Published {
     if (found.empty() || found.back() != pair) found.push_back(pair);
   }
 
-  // An object that may be one of the nearest two of a cell.
+  // An object that may be one of the two nearest to a cell.
   struct Candidate {
     const Near* near;
     std::size_t dominators = 0;  // how many others dominate it
     std::size_t by = 0;          // one of them
   };
 
-  // The objects that may be among the nearest two of a cell of the block, ascending. Empty if every
-  // two objects that a cell may name together have already been named. slack: from the cell at the
-  // centre to any other, the difference of two distances changes by at most this.
+  // The objects that may be among the two nearest to a cell of the block, ascending. Empty if every
+  // two objects that a cell may name together have already been named. slack: bounds how much the
+  // difference of two distances changes from the centre's cell to any other.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();

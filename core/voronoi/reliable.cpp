@@ -1,7 +1,7 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull all other triangles. An end
-// is about as near to the cell as the nearest triangle is. And it is at most half the searched
-// distance from the middle; every point of space gives an upper bound of that distance.
+// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. An end
+// is hardly farther from the cell than the nearest triangle. And it is at most half the searched
+// distance from the middle; each point of space gives an upper bound of that distance.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -111,7 +111,7 @@ class Reliable {
   // An end of the object's shortest segment is at most this far from the point.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // The triangles that may hold an end; none if all of these are of one object.
+  // The triangles that may hold an end; none if all such triangles are of one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;
@@ -190,7 +190,7 @@ VoronoiNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& 
     const ObjectPair objects = voronoi::pair_of(triangles[pair.a].object, triangles[pair.b].object);
     if (out.objects.empty() || out.objects.back() != objects) out.objects.push_back(objects);
   }
-  voronoi::sort_each_once(out.objects);
+  out.objects = in_order(std::move(out.objects));
   for (const float upper : form.upper())
     out.upper.push_back(grid.world(static_cast<double>(upper)));
   return out;

@@ -31,28 +31,28 @@ namespace farcull {
 // from a triangle: in float, with two bounds of the exact one.
 //
 // In units of the grid, a coordinate x of the scene is (x 2^exponent - lo) / cell. The cells are
-// the unit cubes [i, i + 1]. The scaling by a power of two keeps all finite doubles in range.
+// the unit cubes [i, i + 1]. The power of two keeps all finite doubles in range.
 //
-// Let N be at least every coordinate of the point and of the triangle, none of which is negative,
-// and u = 2^-24. All roundings are to nearest.
+// Errors of the computed distance, with u = 2^-24. N is at least every coordinate of the point c
+// and of the triangle with corners q_i; none is negative. All roundings are to nearest.
 //
-// The nearest point is looked for on each edge and in the face. On an edge it is w = q + t (q' - q)
-// with a float t in [0, 1], whatever error t has; in the face it is q0 + s (q1 - q0) + t (q2 - q0)
-// with floats s, t >= 0 and s + t <= 1 (1 + u where the float sum is rounded down to 1). So there
-// is a point P of the triangle that w was meant to be. Along each axis w is off P by at most uN for
-// each difference, product and sum: with the factor 1 + u, and with uN more for c - w, n = c - w is
-// off c - P by at most 6.2 uN, which is 10.8 uN as a length. The length of n is computed with a
-// relative error of at most 2.6 u, where n is no longer than 1.7321 N: 4.6 uN. A corner was rounded
-// to float by at most 1.01 uN along each axis: 1.8 uN. So the exact distance is at most the
-// computed one + 17.2 uN.
+// Upper bound. The nearest point is sought on each edge and in the face. On an edge it is w = q + t
+// (q' - q) with a float t in [0, 1], whatever the error of t. In the face it is q0 + s (q1 - q0) +
+// t (q2 - q0) with floats s, t >= 0 and s + t <= 1 (up to 1 + u, if the float sum is rounded down
+// to 1). With exact arithmetic, this t (and s) gives a point P of the triangle. Along each axis, w
+// differs from P by at most uN for each difference, product and sum, and by the factor 1 + u.
+// Computing n = c - w adds uN, so n differs from c - P by at most 6.2 uN per axis, or 10.8 uN in
+// length. The length of n, at most 1.7321 N, is computed with a relative error of at most 2.6 u:
+// 4.6 uN. Rounding a corner to float moves it by at most 1.01 uN per axis: 1.8 uN. So the exact
+// distance is at most the computed one + 17.2 uN.
 //
-// For a lower bound, no point of the triangle is nearer to c along n than its corners are: the
-// distance is at least the least of n . (c - q_i) / |n|. The computed product is off by 4.1 u of
-// |n| |c - q_i|, which is 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of the
-// quotient, which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN: 15.5 uN. Products below the
-// normal floats err by 2^-149 each, far less than uN |n| where |n| is at least kShortest.
+// Lower bound. Along n, no point of the triangle is nearer to c than the nearest corner. So the
+// distance is at least the least of n . (c - q_i) / |n|. The computed product errs by 4.1 u of |n|
+// |c - q_i|, which is 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of the quotient,
+// which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN the sum is 15.5 uN. Products below the
+// normal floats err by 2^-149 each, far less than uN |n| if |n| is at least kShortest.
 //
-// So voronoi_error() = 32 uN bounds both, with room for the roundings of a few sums of distances
+// voronoi_error() = 32 uN exceeds both, with room for the roundings of a few sums of distances
 // (docs/voronoi.md, lemma V6).
 
 /// The cubes [0, cells[0]] x [0, cells[1]] x [0, cells[2]] contain all triangles of the scene.
@@ -136,7 +136,7 @@ inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e,
   const GridPoint normal = cross(e, f), from = minus(c, q);
   const float square = dot(normal, normal);
   const float s = dot(cross(from, f), normal) / square, t = dot(cross(e, from), normal) / square;
-  // Negated, since s and t are not numbers if the normal is 0.
+  // s and t are NaN if the normal is 0; this form of the test then returns.
   if (!(s >= 0 && t >= 0 && s + t <= 1)) return;
   GridPoint w;
   for (std::size_t k = 0; k < 3; ++k) w[k] = q[k] + s * e[k] + t * f[k];
@@ -166,7 +166,7 @@ inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   /// The reliable form widens each cell by this many of its half diagonals, 0 to 1. The proof needs
-  /// 1; less only serves to show that it is needed.
+  /// 1; a smaller value shows that.
   double widening = 1;
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   std::uint64_t most_pairs = std::uint64_t{1} << 27;  // the reliable form keeps at most these
@@ -175,8 +175,8 @@ constexpr int kVoronoiLargest = 1 << 14;
 
 struct VoronoiCounts {
   std::array<int, 3> cells{};   // of the grid
-  std::uint64_t blocks = 0;     // blocks (also of one cell) whose distances were computed
-  std::uint64_t distances = 0;  // of a point and a triangle
+  std::uint64_t blocks = 0;     // blocks (single cells too) whose distances were computed
+  std::uint64_t distances = 0;  // computed distances of a point from a triangle
 };
 
 /// The result of a form of the diagram. Objects without triangles have no neighbours.

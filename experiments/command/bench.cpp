@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/bench.h"
 #include "experiments/measure/pose_bench.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/machine.h"
 #include "experiments/system/output_file.h"
 
@@ -70,14 +65,11 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
                {"--limit", &limit_, "SECONDS",
                 "who takes longer in the cold run is not repeated;\ndefault 60"},
                {"--device", &device_, "DEVICE",
-                "for methods on GL, as for farcull run, or cpu for\nnone of them; default where "
-                "there is "
-                "one"},
+                "for methods on GL, as for farcull run, or cpu for\n"
+                "none of them; default where there is one"},
                {"--distances", &distances_, "PAIRS",
-                "times of distance queries instead: objects, every two\nobjects; or nearest, each "
-                "with "
-                "the nearest other one.\nPeers are then "
-                "fcl-double,fcl-float,cgal-aabb"},
+                "times of distance queries instead: objects, every two\nobjects; or nearest, "
+                "each with the nearest other one.\nPeers are then fcl-double,fcl-float,cgal-aabb"},
                {"--within", &within_, "DISTANCE",
                 "with --distances: farther ones need not be found;\nin world units, default all"},
                {"--poses", &poses_, "",

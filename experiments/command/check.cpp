@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -38,11 +39,8 @@ Certificate read_certificate(const std::string& path) {
 
 std::string clean_lines(const std::string& text) {
   std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) out += clean_name(line) + "\n";
   return out;
 }
 
@@ -90,8 +88,8 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// Writes the result for one scene. The record comes last: there is none if the two checkers
-// disagree.
+// Writes the result for one scene. The record is written last, so that there is none if the two
+// checkers disagree.
 int write_check(const CheckArguments& arguments, const Scene& scene, const SceneCheck& done) {
   const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
   if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
@@ -103,15 +101,8 @@ int write_check(const CheckArguments& arguments, const Scene& scene, const Scene
   return status;
 }
 
-Scene checked_scene(const CheckArguments& arguments) {
-  Scene scene = read_scene(arguments.scene);
-  if (arguments.self) make_self(scene);
-  require_asked(scene, {});
-  return scene;
-}
-
-// The end of a reason: the meshes in the order whose hash a certificate names, or nothing if none
-// has it. Up to four meshes, which have 24 orders.
+// The end of a reason: the meshes in the order whose hash the certificate names. Empty if no order
+// has this hash, or if there are more than four meshes, which have 24 orders.
 std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
                      const std::string& hash) {
   const std::size_t count = meshes.size();
@@ -140,12 +131,12 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
       throw Error("--clearance", "does not go with the certificate of a tile, which names its own",
                   "leave it out");
     }
-    if (certificate->tile && arguments.scene.ignore) {
+    if (certificate->tile && arguments.scene.ignore)
       throw Error("--ignore", "does not go with the certificate of a tile", "leave it out");
-    }
     if (certificate->tile) return check_tiles(arguments, {arguments.certificate}, false);
   }
-  const Scene scene = checked_scene(arguments);
+  const Scene scene = read_scene(arguments.scene, arguments.self);
+  require_asked(scene, {});
   SceneCheck done = check_scene_with(
       clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
       list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
@@ -266,23 +257,6 @@ void require_number(const std::string& certificate, bool numbers) {
               "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
 }
 
-}  // namespace
-
-int run_check(const CheckArguments& arguments) {
-  const FloatingPointGuard guard;
-  if (arguments.certificate.empty() && arguments.pairs.empty())
-    throw std::logic_error("run_check: neither a certificate nor a list");
-  if (arguments.tiles) {
-    return check_tiles(arguments, numbered_files(arguments.certificate, arguments.tiles), true);
-  }
-  std::optional<GivenList> list;
-  if (!arguments.pairs.empty()) list = read_list(arguments);
-  const GivenList* const given = list ? &*list : nullptr;
-  return arguments.frames ? check_frames(arguments, given) : check_one(arguments, given);
-}
-
-namespace {
-
 class CheckCommand {
  public:
   CLI::App* add_to(CLI::App& app);
@@ -317,9 +291,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
                "a number (%d or %04d) in the name of CERTIFICATE and\n"
                "a column `frame` in the list"},
               {"--tiles", &tiles_, "N",
-               "check the certificates of all N tiles of the scene\n(farcull run --tiles), with a "
-               "number "
-               "(%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
+               "check the certificates of all N tiles of the scene\n(farcull run --tiles), with "
+               "a number (%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
               {"--verified", &arguments_.verified, "",
                "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
                "(docs/verified.md)"},
@@ -348,7 +321,7 @@ int CheckCommand::run() {
   to.pairs = pairs_.value_or("");
   if (frames_) to.frames = parse_frames(*frames_);
   if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-  // The scene may come first if a certificate is last, which its text shows.
+  // The scene may come first, and the certificate last: the text of the file decides.
   const auto is_certificate = [&](const std::string& path) {
     const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
     std::string text(100, ' ');
@@ -362,8 +335,7 @@ int CheckCommand::run() {
     to.certificate = std::move(to.scene.names.back());
     to.scene.names.pop_back();
   }
-  // A scene of several names consists of meshes, so if the first name is not a mesh, it names a
-  // certificate.
+  // If the first of several names is not a mesh, it names a certificate.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {
     throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
@@ -414,6 +386,18 @@ int CheckCommand::run() {
 }
 
 }  // namespace
+
+int run_check(const CheckArguments& arguments) {
+  const FloatingPointGuard guard;
+  if (arguments.certificate.empty() && arguments.pairs.empty())
+    throw std::logic_error("run_check: neither a certificate nor a list");
+  if (arguments.tiles)
+    return check_tiles(arguments, numbered_files(arguments.certificate, arguments.tiles), true);
+  std::optional<GivenList> list;
+  if (!arguments.pairs.empty()) list = read_list(arguments);
+  const GivenList* const given = list ? &*list : nullptr;
+  return arguments.frames ? check_frames(arguments, given) : check_one(arguments, given);
+}
 
 Command add_check(CLI::App& app) { return declare<CheckCommand>(app); }
 

@@ -45,11 +45,12 @@ struct CheckedTile {
   Tile tile;
   double clearance = 0;
   CheckResult result;  // without the pairs that meet
-  std::string pair;    // the one that refutes, by the numbers in the whole scene
+  std::string pair;    // the pair that refutes, by its numbers in the whole scene
 };
 
-// Says why the tiles do not cover everything. Empty if each begins where the previous one ends, the
-// first has no beginning and the last no end; then each pair belongs to one tile (docs/tiles.md).
+// Says why the tiles do not cover everything. Empty if each tile begins where the previous tile
+// ends, the first has no beginning and the last no end. Then each pair belongs to one tile
+// (docs/tiles.md).
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {

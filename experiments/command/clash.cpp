@@ -7,9 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/base/text.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/clash.h"
@@ -18,7 +16,6 @@
 #include "experiments/record/output.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
@@ -88,8 +85,8 @@ class ClashCommand {
   SceneArguments parts() const;
   std::vector<ClashVerdict> failing() const;
   bool only_new() const { return std::ranges::count(split_list(fail_on_.value_or("")), "new") > 0; }
-  // Takes what is ignored out of the scene and into the options, with --ignore and --only. lacking:
-  // passed_over after the first frame.
+  // Moves what the scene ignores into the options, and adds --ignore and --only. lacking: what to
+  // do about names that the scene lacks; passed_over after the first frame.
   void prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const;
   bool fails(const ClashRecord& record, const ClashTable& table) const;
   int run_frames(const SceneArguments& files, FrameRange range, const Outputs& outputs,
@@ -112,8 +109,7 @@ CLI::App* ClashCommand::add_to(CLI::App& app) {
                "parts at this distance or less are near, in world\nunits; default 0"},
               {"--tolerance", &tolerance_, "T",
                "an overlap proved to be at most this deep, or a gap of\nat most this, is a touch; "
-               "in "
-               "world units, or relative to\nthe box of all parts, as in 1e-9*size; default 0"},
+               "in world units, or relative to\nthe box of all parts, as in 1e-9*size; default 0"},
               {"--depth", &depth_, "",
                "how deep parts are in each other, as bounds; where parts\nhave many triangles this "
                "takes longer than all else"},

@@ -9,13 +9,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "embedded/methods_txt.h"
 #include "embedded/pairs_txt.h"
@@ -42,18 +39,13 @@ constexpr std::array kTopics = {
     // A new topic goes here.
 };
 
-}  // namespace
-
-std::span<const HelpTopic> help_topics() { return kTopics; }
-
+// An indented line for each topic, with its name and its title.
 std::string help_topics_text() {
   std::string out;
-  for (const HelpTopic& topic : help_topics())
+  for (const HelpTopic& topic : kTopics)
     out += fmt::format("  farcull help {:<12}{}\n", topic.name, topic.title);
   return out;
 }
-
-namespace {
 
 class HelpCommand {
  public:
@@ -71,7 +63,7 @@ class HelpCommand {
   }
   int run() const {
     if (words_.size() == 1) {
-      for (const HelpTopic& topic : help_topics()) {
+      for (const HelpTopic& topic : kTopics) {
         if (words_[0] != topic.name) continue;
         write_help(topic.text);
         return kExitDone;
@@ -80,7 +72,7 @@ class HelpCommand {
     const std::string text = help_of(*app_, words_);
     if (text.empty()) {
       std::vector<std::string> topics;
-      for (const HelpTopic& topic : help_topics()) topics.emplace_back(topic.name);
+      for (const HelpTopic& topic : kTopics) topics.emplace_back(topic.name);
       throw Error(
           fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
           fmt::format("{}give one of the topics {}, or a command that farcull help lists",
@@ -95,13 +87,7 @@ class HelpCommand {
   std::vector<std::string> words_;
 };
 
-}  // namespace
-
-Command add_help(CLI::App& app) { return declare<HelpCommand>(app); }
-
 // ---- the command line ----
-
-namespace {
 
 constexpr const char* kOutOfMemory =
     "memory: there is not enough; use a smaller scene or resolution, a higher limit (ulimit -v) or "
@@ -252,6 +238,10 @@ int dispatch(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::span<const HelpTopic> help_topics() { return kTopics; }
+
+Command add_help(CLI::App& app) { return declare<HelpCommand>(app); }
 
 int command_line(int argc, char** argv) {
   prepare_output();

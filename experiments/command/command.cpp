@@ -12,24 +12,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
-#include "experiments/method/run.h"
 #include "experiments/record/stage_words.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
@@ -99,7 +91,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
     before += (before.empty() ? "" : " ") + command->get_name();
     command = found;
   }
-  // Not App::help(): it describes the command that was parsed, which is `help`.
+  // App::help() would describe the command that was parsed, which is `help`.
   return command->get_formatter()->make_help(
       command, before.empty() ? command->get_name() : before + " " + command->get_name(),
       CLI::AppFormatMode::Normal);
@@ -170,6 +162,10 @@ void require_number(const std::string& certificate, bool frames) {
               "say which frames with --frames N or --frames FIRST:LAST, or name one file");
 }
 
+std::string complaint(const std::string& message) {
+  return wrapped("farcull: " + clean_name(message), text_columns(stderr), 9);
+}
+
 }  // namespace
 
 Rows scene_rows(SceneArguments& scene, const char* name, const std::string& help, Need need) {
@@ -219,26 +215,19 @@ std::string help_of_option(const std::string& name) { return spelled(run_option(
 
 void print(const std::string& text) { write_output("-", wrapped(text)); }
 
-namespace {
-
-std::string complaint(const std::string& message) {
-  return wrapped("farcull: " + clean_name(message), text_columns(stderr), 9);
-}
-
-}  // namespace
-
 void complain(const std::string& message) { std::fputs(complaint(message).c_str(), stderr); }
 
 void say_notes() {
-  static std::set<std::string> said;  // frames and tiles read again what they have read
+  static std::set<std::string> said;  // frames and tiles read the same files again
   for (const std::string& note : take_reading_notes()) {
     if (said.insert(note).second) complain(note);
   }
 }
 
-Scene read_scene(const SceneArguments& arguments) {
+Scene read_scene(const SceneArguments& arguments, bool self) {
   Scene scene = load_scene(arguments);
   say_notes();
+  if (self) make_self(scene);
   return scene;
 }
 
@@ -343,9 +332,8 @@ void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<Na
 }
 
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs) {
-  const bool named = std::any_of(outputs.begin(), outputs.end(),
-                                 [](const NamedFile& file) { return file.path == "-"; });
-  if (!named) outputs.insert(outputs.begin(), {kStandardOutput, "-"});
+  if (std::ranges::find(outputs, "-", &NamedFile::path) == outputs.end())
+    outputs.insert(outputs.begin(), {kStandardOutput, "-"});
   std::map<Identity::Key, const NamedFile*> files;
   const NamedFile* standard_output = nullptr;
   for (const NamedFile& output : outputs) {
@@ -427,7 +415,7 @@ void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
 }
 
 void check_scene(const std::vector<std::string>& scene) {
-  if (std::find(scene.begin(), scene.end(), "") != scene.end())
+  if (std::ranges::find(scene, "") != scene.end())
     throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
 }
 

@@ -93,8 +93,6 @@ struct HelpTopic {
   const char* text;   // ends with a newline
 };
 std::span<const HelpTopic> help_topics();
-/// One indented line per topic, such as "terms: the words of the tables".
-std::string help_topics_text();
 
 /// A declared command. run() returns the exit status and throws Error if the arguments are bad.
 struct Command {
@@ -132,12 +130,8 @@ Command add_suite(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 
-// The commands of `farcull experiment`. lemma exits with 1 if it finds a violation at the budget
-// radius or more.
+// A command of `farcull experiment`. Exit status 1: a violation at the budget radius or more.
 Command add_lemma(CLI::App& experiment);
-/// A command for each study, and `all`. Exit status 1: a method with a guarantee missed a pair; 2:
-/// a point could not be measured.
-std::vector<Command> add_studies(CLI::App& experiment);
 
 /// The folder of results unless --out says otherwise; `farcull report` reads it.
 inline constexpr const char* kResultsFolder = "farcull-results";
@@ -183,10 +177,10 @@ void complain(const std::string& message);
 /// Prints what readers passed over (take_reading_notes()) on standard error, each line once.
 void say_notes();
 
-/// load_scene() and say_notes().
-Scene read_scene(const SceneArguments& arguments);
+/// load_scene() and say_notes(); then make_self() if `self` is set.
+Scene read_scene(const SceneArguments& arguments, bool self = false);
 
-/// Likewise prints that a guarantee is broken, in red on a terminal.
+/// As complain(), in red on a terminal: for a guarantee that is broken.
 void complain_broken(const std::string& message);
 
 /// Throws Error if there is nothing to test, since 0 pairs would look like a scene without
@@ -198,7 +192,7 @@ void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// The command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const SceneArguments& scene);
 
-/// One line on standard error that each update overwrites; on a terminal only.
+/// One line on standard error that each update overwrites. Nothing is printed without a terminal.
 class TerminalProgress {
  public:
   /// first: shown at once.
@@ -272,7 +266,7 @@ class MethodOptions {
   std::map<std::string, bool> flags_;
   std::deque<std::string> words_;
 };
-/// Reads the option if it was given.
+/// Reads the option into `options` if it was given.
 void take_given(const char* name, const Text& text, RunOptions& options);
 
 /// Reads a distance in world units. Throws Error naming --clearance.
@@ -319,7 +313,7 @@ struct CheckArguments {
   std::string json = {};   // "" for none; "-": standard output, in place of the text
   bool self = false;       // every object is tested against itself, as by run --self
   std::string pairs = {};  // "" for none, or a list as `farcull run --pairs` writes it
-  std::optional<double> clearance = {};  // of the list; a certificate must have it too
+  std::optional<double> clearance = {};  // of the list; a certificate must have the same
   std::optional<FrameRange> frames = {};
   std::optional<FrameRange> tiles = {};  // the numbers of the tiles in the name of the certificate
   bool verified = false;  // the proved checker must agree; goes with certificates of one scene
@@ -354,8 +348,7 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
-// What the program tells its user besides an answer (hints.cpp). Each function looks at the meshes
-// anew.
+// What the program tells its user besides an answer (hints.cpp).
 
 /// The objects that collide with themselves (two of their triangles do), ascending.
 std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/command/command.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/python.h"
 
@@ -118,8 +117,7 @@ int CompareCommand::run() const {
     throw Error("--figure", *outputs.figure + " is no name of an SVG", "let it end in .svg");
   TerminalProgress terminal;
   const Progress progress = terminal.callback("reading the scene");
-  Scene scene = read_scene(scene_);
-  if (arguments.self) make_self(scene);
+  const Scene scene = read_scene(scene_, arguments.self);
   require_pairs(nothing_to_test(scene), command_with("farcull compare", scene_) + " --self");
   const std::string methods = arguments.methods.value_or("");
   if (!has_self(scene) && std::ranges::count(split_list(methods), to_string(Method::s_cullide)) > 0)

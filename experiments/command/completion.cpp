@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
+#include <ranges>
 
-#include "core/base/error.h"
 #include "experiments/command/command.h"
 #include "experiments/method/options.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -21,12 +20,9 @@ namespace {
 std::vector<std::string> alternatives(const std::string& type) {
   std::vector<std::string> out;
   if (type.find('|') == std::string::npos) return out;
-  for (std::size_t at = 0; at <= type.size();) {
-    const std::size_t end = std::min(type.find('|', at), type.size());
-    const std::string word = type.substr(at, end - at);
+  for (const auto word : std::views::split(type, '|')) {
     const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
-    if (std::none_of(word.begin(), word.end(), capital)) out.push_back(word);
-    at = end + 1;
+    if (std::ranges::none_of(word, capital)) out.emplace_back(word.begin(), word.end());
   }
   return out;
 }

@@ -6,19 +6,14 @@
 #include <algorithm>
 #include <cfloat>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/output.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "verify/inside.h"
 
@@ -230,7 +225,8 @@ int DistanceCommand::run() const {
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
-// Objects that are not closed, so an answer could not say whether another object is inside.
+// The objects of which no answer could say whether another object is inside, as they are not
+// closed.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {
@@ -245,8 +241,7 @@ std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& 
 int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& outputs) const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback("reading the scene");
-  Scene scene = read_scene(scene_);
-  if (self_) make_self(scene);
+  const Scene scene = read_scene(scene_, self_);
   require_question(scene, options);
   const DistanceRecord record = distances(scene, options, progress);
   terminal.clear();

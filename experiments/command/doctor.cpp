@@ -1,19 +1,16 @@
 // Probes the native canvas and the device, and prints the findings. Each probe of the native canvas
 // counts events that must not happen, so its bound is 0.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <optional>
-#include <vector>
 
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/base/text.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"
 #include "core/gl/probe/probe.h"
@@ -240,33 +237,24 @@ std::vector<ProbeResult> native_probes() {
   return out;
 }
 
-// The findings on the native canvas, which needs no device.
-struct NativeFindings {
-  std::vector<ProbeResult> probes;
-  bool pass = true;
-};
-
-NativeFindings look_at_native() {
-  NativeFindings out{.probes = native_probes()};
-  for (const ProbeResult& p : out.probes) out.pass = out.pass && p.pass;
-  return out;
+bool all_pass(const std::vector<ProbeResult>& probes) {
+  return std::ranges::all_of(probes, &ProbeResult::pass);
 }
 
-std::string native_text(const NativeFindings& found) {
-  std::string others;
-  for (const std::string& target : lane_targets()) {
-    if (target != lane_target()) others += (others.empty() ? "" : ", ") + target;
-  }
-  return fmt::format("native: the cores of the CPU, lanes of {}{}\n{}", lane_target(),
-                     others.empty() ? "" : " (also probed: " + others + ")",
-                     probes_table(found.probes));
+std::string native_text(const std::vector<ProbeResult>& probes) {
+  std::vector<std::string> others = lane_targets();
+  std::erase(others, lane_target());
+  return fmt::format(
+      "native: the cores of the CPU, lanes of {}{}\n{}", lane_target(),
+      others.empty() ? "" : fmt::format(" (also probed: {})", fmt::join(others, ", ")),
+      probes_table(probes));
 }
 
-Json native_json(const NativeFindings& found) {
+Json native_json(const std::vector<ProbeResult>& probes) {
   return {{"lanes", lane_targets()},
           {"max_resolution", native_limits().max_resolution},
-          {"probes", probes_json(found.probes)},
-          {"pass", found.pass}};
+          {"probes", probes_json(probes)},
+          {"pass", all_pass(probes)}};
 }
 
 struct DoctorArguments {
@@ -276,19 +264,20 @@ struct DoctorArguments {
 void write_report(Json report, bool pass, const DoctorArguments& arguments) {
   report["pass"] = pass;
   report["commit"] = FARCULL_COMMIT;
-  write_output(arguments.json, report.dump(2) + "\n");
+  write_json(report, arguments.json);
 }
 
 // Reports the findings on a machine without OpenGL, or with --device cpu.
-int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& native) {
+int doctor_without_gl(const DoctorArguments& arguments) {
+  const std::vector<ProbeResult> native = native_probes();
   if (!arguments.json.empty()) {
     write_report(
         {{"native", native_json(native)},
          {"floating_point", floating_point_json(callers_floating_point(), floating_point())}},
-        native.pass, arguments);
+        all_pass(native), arguments);
   }
   if (arguments.json != "-") print(native_text(native) + arithmetic_line(callers_floating_point()));
-  return native.pass ? 0 : 1;
+  return all_pass(native) ? 0 : 1;
 }
 
 class DoctorCommand {
@@ -318,9 +307,8 @@ int DoctorCommand::run() const {
                                   .json = checked({.json = json_}, {}).json.value_or("")};
   const FloatingPointGuard guard;
   if (!arguments.json.empty()) check_output(arguments.json);
-  if (is_cpu(arguments.device)) return doctor_without_gl(arguments, look_at_native());
-  // Comes before the probes of the native canvas, which take seconds, so that a missing device is
-  // refused at once.
+  if (is_cpu(arguments.device)) return doctor_without_gl(arguments);
+  // A missing device is refused before the probes of the native canvas, which take seconds.
   const std::vector<GlDevice> devices = GlContext::list_devices();
   const std::optional<int> chosen = choose(devices, arguments.device);
   if (!chosen && arguments.device.empty()) {
@@ -328,14 +316,14 @@ int DoctorCommand::run() const {
       print(devices_table(devices, -1) +
             "no device offers what farcull needs of OpenGL: "
             "everything runs on the cores of the CPU\n\n");
-    return doctor_without_gl(arguments, look_at_native());
+    return doctor_without_gl(arguments);
   }
   if (arguments.device == "hardware" &&
       std::ranges::count(devices, arguments.device, &GlDevice::kind) == 0)
     throw Error("--device", "no GPU was found", "give software or native");
-  // The context throws an Error if nothing fits.
+  // The constructor throws Error if no device fits the option.
   const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
-  const NativeFindings native = look_at_native();
+  const std::vector<ProbeResult> native = native_probes();
   const GlInfo& gl = context.info();
   const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
   const bool people = arguments.json != "-";
@@ -351,8 +339,7 @@ int DoctorCommand::run() const {
       });
   if (terminal) std::fprintf(stderr, "\r\033[K");
   const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
-  const bool pass =
-      native.pass && std::ranges::all_of(probes, [](const ProbeResult& p) { return p.pass; });
+  const bool pass = all_pass(native) && all_pass(probes);
   if (!arguments.json.empty()) {
     Json report = {
         {"native", native_json(native)},

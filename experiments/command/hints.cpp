@@ -4,11 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <numeric>
 #include <set>
 
-#include "core/base/text.h"
 #include "core/boxes/join.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/load.h"
@@ -64,13 +62,9 @@ std::string nested_line(const Scene& scene, const Record& record) {
   std::map<std::uint32_t, bool> closed;
   std::uint64_t count = 0;
   std::string first;
-  const auto within = [&](std::uint32_t a, std::uint32_t b) {
-    return (boxes[a].lo.array() >= boxes[b].lo.array()).all() &&
-           (boxes[a].hi.array() <= boxes[b].hi.array()).all();
-  };
   for (const auto& [a, b] : overlapping) {
     for (const auto& [in, out] : {ObjectPair{a, b}, ObjectPair{b, a}}) {
-      if (!within(in, out) || meet.contains({a, b})) continue;
+      if (!lies_within(boxes[in], boxes[out]) || meet.contains({a, b})) continue;
       if (!closed.contains(out)) closed[out] = is_closed(scene, out);
       if (!closed[out]) continue;
       if (count++ == 0) first = scene.objects[in].name + " in " + scene.objects[out].name;

@@ -1,20 +1,13 @@
 // Runs the lemma experiment at one radius; prints a table, writes JSON.
 #include <fmt/format.h>
 
-#include <memory>
-#include <optional>
-
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/base/text.h"
 #include "core/native/canvas.h"
 #include "experiments/command/command.h"
 #include "experiments/lemma/lemma.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/system/output_file.h"
 #include "offsets/offsets.h"
 #include "verify/worst_canvas.h"
 
@@ -117,8 +110,8 @@ struct LemmaCanvas {
   const GlInfo* device() { return name == "gl" ? &session->context().info() : nullptr; }
 };
 
-// displaced: adds errors as large as those of doubles to what is drawn. Only for canvases that have
-// no errors of their own, which would hide these.
+// displaced: what is drawn gets errors as large as those of doubles. Only for canvases without
+// errors of their own, which would hide these errors.
 Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
                bool displaced, const Fattener& fattener, const Progress& progress) {
   LemmaSettings settings;

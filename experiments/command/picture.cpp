@@ -6,9 +6,6 @@
 
 #include <filesystem>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
@@ -57,9 +54,8 @@ Outputs checked_outputs(const Text& picture, const Text& page,
                 "give -o FILE.png, or -o - for standard output, or --html FILE for a page");
   }
   const Outputs out = checked({.picture = picture, .page = page}, inputs);
-  if (out.page == "-") {
+  if (out.page == "-")
     throw Error("--html", "a page does not go to standard output", "give --html FILE.html");
-  }
   const std::string ending = picture ? fs::path(*picture).extension().string() : "";
   if (!ending.empty() && lower_case(ending) != ".png") {
     throw Error("-o", "'" + *picture + "' is not named like a PNG, the only format that is written",
@@ -70,11 +66,6 @@ Outputs checked_outputs(const Text& picture, const Text& page,
                 "let it go somewhere, or give -o FILE.png");
   }
   return out;
-}
-
-// A size in decimal units, as file managers show it, such as "11.2 MB".
-std::string size_text(std::size_t bytes) {
-  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
 }
 
 }  // namespace
@@ -107,9 +98,8 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
                 "a page to look into the answers: one file that opens in\nany browser and needs no "
                 "network"},
                {"--resolutions", &resolutions_, "LIST",
-                "with --html: px, by commas, that the reader steps\nthrough, of methods without a "
-                "resolution "
-                "of their own;\ndefault 32,64,128,256,512"},
+                "with --html: px, by commas, that the reader steps\nthrough, of "
+                "methods without a resolution of their own;\ndefault 32,64,128,256,512"},
                {"--size", &size_, "WxH", "px of a panel; default 900x760"}},
       "Examples:\n"
       "  farcull picture two-bunnies --method cullide --resolution 128 -o missed.png\n"
@@ -176,13 +166,10 @@ PictureArguments PictureCommand::arguments() const {
     }
   }
   if (!far) {
-    for (const auto& [option, text] :
-         {std::pair("--radius", radius_), std::pair("--offset", offset_),
-          std::pair("--depth", depth_)}) {
-      if (text) {
-        throw Error(option, "has a meaning for far alone", "leave it out, or use --method far");
-      }
-    }
+    refuse_given({{"--radius", radius_.has_value()},
+                  {"--offset", offset_.has_value()},
+                  {"--depth", depth_.has_value()}},
+                 "has a meaning for far alone", "leave it out, or use --method far");
   }
   validate(out);
   return out;
@@ -252,8 +239,8 @@ int PictureCommand::run() const {
     lines += result.not_asked;
     if (outputs.picture) lines += "The picture is in " + clean_name(*outputs.picture) + "\n";
     if (html_) {
-      lines += fmt::format("The page is in {} ({})\n", clean_name(*outputs.page),
-                           size_text(page.html.size()));
+      lines += fmt::format("The page is in {} ({:.1f} MB)\n", clean_name(*outputs.page),
+                           static_cast<double>(page.html.size()) / 1e6);
     }
     print(lines);
   }

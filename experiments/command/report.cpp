@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
-#include "core/base/error.h"
 #include "core/canvas/canvas.h"
 #include "core/view/regions.h"
 #include "experiments/command/command.h"
@@ -42,12 +40,10 @@ CLI::App* ReportCommand::add_to(CLI::App& app) {
        {"--device", &device_, "DEVICE", kDeviceHelp},
        {"--no-pictures", &no_pictures_, "",
         "leave out the pictures of scenes, for which methods are\nrun"}},
-      "Writes DIR/report: index.html, one page that needs nothing else; figures as SVG and PDF "
-      "with\n"
-      "their numbers as CSV; tables as CSV and LaTeX. An earlier report there is replaced. It "
-      "needs\n"
-      "Python with pandas and matplotlib; FARCULL_PYTHON names another interpreter than "
-      "python3.\n\n"
+      "Writes DIR/report: index.html, one page that needs nothing else; figures as "
+      "SVG and PDF with\ntheir numbers as CSV; tables as CSV and LaTeX. An earlier "
+      "report there is replaced. It needs\nPython with pandas and matplotlib; "
+      "FARCULL_PYTHON names another interpreter than python3.\n\n"
       "Examples:\n"
       "  farcull experiment all --quick && farcull report\n"
       "  farcull report results");

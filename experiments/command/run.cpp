@@ -6,15 +6,11 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/miss_model.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
@@ -77,9 +73,8 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
       "  farcull verify scene.json --json record.json\n\n"
       "The first lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
       "terminal the verdict is green or red, unless NO_COLOR is set. Of far on a scene without\n"
-      "frames it also says how many pairs were at risk: where none was, \"0 missed\" does not "
-      "show\n"
-      "that the radius is large enough.\n\n"
+      "frames it also says how many pairs were at risk: where none was, "
+      "\"0 missed\" does not show\nthat the radius is large enough.\n\n"
       "Exit status 1: a culled pair intersects, whatever the method."},
      {"plan", "what run would do, what it would leave out, and why",
       "Examples:\n"
@@ -206,9 +201,8 @@ Rows RunCommand::output_rows() {
   if (kind_ != Kind::run) return rows;
   rows.insert(rows.begin() + 1,
               {"--tiles", &tiles_, "K/N",
-               "only the Kth of N parts of the scene, which is read\ntwice and never held; boxes "
-               "only. "
-               "With --json and\n--pairs farcull merge joins all parts"});
+               "only the Kth of N parts of the scene, which is read\ntwice and never "
+               "held; boxes only. With --json and\n--pairs farcull merge joins all parts"});
   return rows;
 }
 
@@ -307,8 +301,7 @@ int RunCommand::run() const {
 
 int RunCommand::plan(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, read_files());
-  Scene scene = read_scene(scene_);
-  if (options_.has("self")) make_self(scene);
+  const Scene scene = read_scene(scene_, options_.has("self"));
   require_pairs(nothing_to_test(scene), with_self());
   RunOptions all = options;
   all.ignored = left_out(scene);
@@ -323,8 +316,7 @@ int RunCommand::plan(const RunOptions& options) const {
 int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) const {
   TerminalProgress terminal;
   const Progress progress = terminal.callback("reading the scene");
-  Scene scene = read_scene(scene_);
-  if (options_.has("self")) make_self(scene);
+  const Scene scene = read_scene(scene_, options_.has("self"));
   require_pairs(nothing_to_test(scene), with_self());
   if (outputs.certificate) require_nothing_ignored(scene, "a certificate");
   RunOptions all = options;
@@ -342,9 +334,8 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
     write_output(*outputs.pairs,
                  [&](const TextSink& sink) { give_pairs_csv(scene, record, columns(), sink); });
   }
-  if (outputs.certificate) {
+  if (outputs.certificate)
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
-  }
   if (outputs.json) write_json(to_json(scene, record), *outputs.json);
   if (!outputs.to_stdout()) {
     std::string verdict;

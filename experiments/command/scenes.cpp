@@ -3,14 +3,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "core/base/error.h"
 #include "experiments/command/command.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 

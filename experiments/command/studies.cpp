@@ -7,9 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/view/view.h"
 #include "experiments/command/command.h"
 #include "experiments/peers/contestants.h"
@@ -239,6 +237,17 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
   return summary.failed.empty() ? 0 : 2;
 }
 
+// A command for each study, and `all`. Exit status 1: a method with a guarantee missed a pair; 2: a
+// point could not be measured.
+std::vector<Command> add_studies(CLI::App& experiment) {
+  const auto studies = std::make_shared<StudiesCommand>();
+  studies->add_to(experiment);
+  std::vector<Command> out;
+  for (CLI::App* command : studies->commands())
+    out.push_back({command, [studies] { return studies->run(); }});
+  return out;
+}
+
 class MergeCommand {
  public:
   CLI::App* add_to(CLI::App& app);
@@ -345,15 +354,6 @@ class ExperimentCommand {
 };
 
 }  // namespace
-
-std::vector<Command> add_studies(CLI::App& experiment) {
-  const auto studies = std::make_shared<StudiesCommand>();
-  studies->add_to(experiment);
-  std::vector<Command> out;
-  for (CLI::App* command : studies->commands())
-    out.push_back({command, [studies] { return studies->run(); }});
-  return out;
-}
 
 Command add_merge(CLI::App& app) { return declare<MergeCommand>(app); }
 

@@ -2,8 +2,6 @@
 // asks a program about them.
 #include <fmt/format.h>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
 #include "embedded/ask_py.h"
 #include "experiments/command/command.h"
 #include "experiments/suite/writer.h"
@@ -78,9 +76,8 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
       "  farcull suite large --size full\n"
       "  farcull suite pairs-and-meshes --ask 'python3 my_library.py'\n\n"
       "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
-      "and integers; a disagreement ends the command. The files depend on the size and the\n"
-      "seed alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without "
-      "farcull.");
+      "and integers; a disagreement ends the command. The files depend on the size and the\nseed "
+      "alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without farcull.");
 }
 
 int SuiteCommand::run() const {

@@ -134,7 +134,7 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   for (std::string& word : given) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  // The checker has a list of each object's triangles, on which some of its functions recurse.
+  // Some functions of the checker recurse on the list of an object's triangles.
   rlimit stack{};
   const bool known = ::getrlimit(RLIMIT_STACK, &stack) == 0;
   const rlimit largest{stack.rlim_max, stack.rlim_max};

@@ -5,7 +5,6 @@
 #include "core/base/stopwatch.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
-#include "experiments/method/contacts_within.h"
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 #include "experiments/record/stage_words.h"

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -94,10 +93,6 @@ class Objects {
     std::vector<Vec3> parts;
     std::unique_ptr<ClosedObject> solid;
   };
-  static bool lies_within(const Box& inner, const Box& outer) {
-    return (inner.lo.array() >= outer.lo.array()).all() &&
-           (inner.hi.array() <= outer.hi.array()).all();
-  }
 
   const Scene& scene_;
   std::unique_ptr<Facts[]> facts_;
@@ -143,8 +138,8 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
     } else {
       row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
     }
-    // Two triangles of one plane that meet in a segment may do so by diagonals of flat faces. Where
-    // it is an edge of a closed part, its triangle of another plane has the segment as well.
+    // Skips segments of coplanar triangles, which may be diagonals of flat faces. If such a segment
+    // is an edge of a closed part, the edge's other triangle, in another plane, has it as well.
     if (contact.dimension != 1 || contact.kind == ContactKind::coplanar) continue;
     const auto& [p, q] = contact.ends;
     ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
@@ -270,9 +265,9 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
     Penetration found =
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
     if (found.hi > tolerance) {
-      // A point of one surface this far inside the other object stays inside after every
-      // translation by the tolerance. Its distance is rounded, so this proves nothing, but is
-      // hardly wrong.
+      // If a point of one surface is this far inside the other object, it stays inside after every
+      // translation by the tolerance. The distance is rounded, so this is no proof, but hardly
+      // wrong.
       const auto is_deep = [&](const Vec3& p) {
         return std::ranges::any_of(std::array{&a, &b}, [&](const ClosedObject* solid) {
           return solid->has(p) && (solid->nearest(p) - p).norm() > tolerance;
@@ -370,8 +365,8 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
   return rows;
 }
 
-/// The most serious first: by verdict, then deep before shallow, long before short curves, near
-/// before far.
+/// Whether x comes before y: by verdict, then deep before shallow overlaps, long before short
+/// curves, near before far objects.
 bool more_serious(const ClashRow& x, const ClashRow& y) {
   if (x.ignored != y.ignored) return y.ignored;
   if (x.verdict != y.verdict) return x.verdict < y.verdict;

@@ -53,8 +53,8 @@ struct ClashRow {
   ClashVerdict exact = ClashVerdict::clear;  // the verdict with a tolerance of 0
   bool ignored = false;
   bool proved = true;    // false: a touch was not proved to be one, so it counts as a clash
-  bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no point
-                         // was found that is deeper, as of a part that is tight in a slot
+  bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no deeper
+                         // point was found, as when a part fits tightly in a slot
   std::uint64_t pairs = 0;                                     // of triangles that meet
   std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // how many of these, by kind
   std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
@@ -62,13 +62,12 @@ struct ClashRow {
                                                 // most the clearance or the tolerance apart
   double distance = 0;                          // root of `squared`, rounded once
   Box box = Box::empty();  // box of the common points, the inner object or the two nearest points
-  std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};  // twice a common point, twice a
-                                                               // corner of the inner object, or
-                                                               // two nearest points; rounded
+  /// A common point twice, a corner of the inner object twice, or two nearest points; rounded.
+  std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};
   double curve = 0;  // length of the curve in which the surfaces cross
   std::vector<std::array<Vec3, 2>> segments = {};  // of that curve, each once; ends rounded
-  std::optional<Penetration> depth = {};   // of a clash or containment of two closed objects; set
-                                           // if asked for, within the tolerance or shallow
+  std::optional<Penetration> depth = {};   // of two closed objects that clash or contain; set if
+                                           // asked for, if within the tolerance, or if shallow
   std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth;
                                            // set if a depth is asked for or a tolerance is given
   bool within_tolerance() const { return verdict != exact; }
@@ -83,12 +82,15 @@ struct ClashRecord {
   std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // pairs not ignored, by verdict
   std::uint64_t within_tolerance = 0;  // of these, pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
-  std::vector<ObjectPair> copies;      // at most 100 pairs that may be one part twice: equally many
-                                       // triangles, and the same box but for rounding to floats
-  std::optional<ObjectPair> sizes;     // the smallest and the largest object, if their sizes differ
-                                       // by a factor of 100 or more
-  std::vector<ClashRow> rows;        // without `clear`; the most serious first, ignored pairs last;
-                                     // ignored pairs without `near`
+  /// At most 100 pairs that may be one part twice: they have equally many triangles, and the same
+  /// box
+  /// but for rounding to floats.
+  std::vector<ObjectPair> copies;
+  /// The smallest and the largest object, if their sizes differ by a factor of 100 or more.
+  std::optional<ObjectPair> sizes;
+  /// The rows of all verdicts but `clear` (for ignored pairs also without `near`): the most serious
+  /// first, ignored pairs last.
+  std::vector<ClashRow> rows;
   std::uint64_t triangle_pairs = 0;  // that meet
   std::vector<Stage> trace;
   double ms = 0;

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -20,25 +19,20 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/gl/base/context.h"
-#include "core/gl/probe/probe.h"
 #include "offsets/offsets.h"
 #include "probed.h"
-#include "verify/kernel_check.h"
 
 namespace farcull {
+namespace {
 
 // The probes of A4 (docs/reliability.md). For both offsets the canvas's fragment program computes
 // intervals of fattened triangles and of solids with random floats. verify/kernel_check makes the
 // cases and counts the losses.
-
-namespace {
 
 // Runs a probe and measures how much was lost. The probe fails if anything was lost, if answers are
 // loose too often, if nothing was checked, or if it breaks off with an Error.
@@ -101,65 +95,6 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
   return tally;
 }
 
-}  // namespace
-
-std::vector<SolidKernel> solid_kernels() {
-  return {{"oriented boxes", obb_fattener().solid,
-           [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); }, adversarial_box,
-           check_box},
-          {"exact offsets", minkowski_fattener().solid,
-           [](const KernelTriangle& t) {
-             return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
-           },
-           adversarial_minkowski, check_minkowski}};
-}
-
-std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
-                                             const KernelProbeOptions& options) {
-  const std::string tried =
-      "solid_interval by the canvas's fragment program; triangles of every kind, and floats made "
-      "to fail; each is seen behind itself, by the programs with flags and with queries, in both "
-      "depth formats";
-  std::vector<ProbeResult> out;
-  for (const SolidKernel& kernel : solid_kernels())
-    out.push_back(result(kernel.name, tried, [&] { return solids(context, options, kernel); }));
-  return out;
-}
-
-namespace {
-
-std::vector<ProbeResult> probes_of(const GlContext& context, bool brief,
-                                   const std::function<void(const std::string&)>& started) {
-  std::vector<ProbeResult> out = run_probes(context, {.brief = brief}, started);
-  if (started) started("kernels");
-  for (ProbeResult& r : solid_kernel_probes(context, {.brief = brief})) out.push_back(std::move(r));
-  std::stable_sort(out.begin(), out.end(), [](const ProbeResult& a, const ProbeResult& b) {
-    return std::pair(a.assumption.size(), a.assumption) <
-           std::pair(b.assumption.size(), b.assumption);  // A10 after A2
-  });
-  return out;
-}
-
-}  // namespace
-
-std::vector<ProbeResult> all_probes(const GlContext& context,
-                                    const std::function<void(const std::string&)>& started) {
-  return probes_of(context, false, started);
-}
-
-std::vector<ProbeResult> brief_probes(const GlContext& context) {
-  return probes_of(context, true, {});
-}
-
-}  // namespace farcull
-
-// ---- the verdict ----
-
-extern char** environ;
-
-namespace farcull {
-namespace {
-
 namespace fs = std::filesystem;
 
 // Prefixes of environment variables that change the code Mesa's and NVIDIA's drivers generate.
@@ -169,7 +104,6 @@ constexpr std::array kDriverVariables = {
     "SI_",    "RADEON_",  "ZINK_",    "NOUVEAU_", "NV50_",  "NVC0_", "FD_",   "IR3_",
     "TU_",    "V3D_",     "VC4_",     "PAN_",     "LIMA_",  "ETNA_", "SVGA_", "VIRGL_",
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
-bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
 
 // Mesa also reads each driconf option from the environment variable of its name, in lower case.
 // Other variables in lower case are rare, except those of proxies.
@@ -183,7 +117,7 @@ std::string driver_environment() {
   std::vector<std::string> found;
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
-    const auto named = [&](const char* prefix) { return begins(variable, prefix); };
+    const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
     if (may_be_driconf(variable) || std::ranges::any_of(kDriverVariables, named))
       found.push_back(variable);
   }
@@ -206,8 +140,8 @@ std::string processor() {
   std::string line, out;
   bool model = false, features = false;
   while (std::getline(in, line) && !(model && features)) {
-    const bool is_model = begins(line, "model name") || begins(line, "CPU part");
-    const bool is_features = begins(line, "flags") || begins(line, "Features");
+    const bool is_model = line.starts_with("model name") || line.starts_with("CPU part");
+    const bool is_features = line.starts_with("flags") || line.starts_with("Features");
     if ((is_model && !model) || (is_features && !features))
       out += (out.empty() ? "" : ", ") +
              (is_model ? line.substr(line.find(':') + 2) : "features " + hash_of(line));
@@ -290,6 +224,43 @@ void forget(const std::string& file) {
 }
 
 }  // namespace
+
+std::vector<SolidKernel> solid_kernels() {
+  return {{"oriented boxes", obb_fattener().solid,
+           [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); }, adversarial_box,
+           check_box},
+          {"exact offsets", minkowski_fattener().solid,
+           [](const KernelTriangle& t) {
+             return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
+           },
+           adversarial_minkowski, check_minkowski}};
+}
+
+std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
+                                             const KernelProbeOptions& options) {
+  const std::string tried =
+      "solid_interval by the canvas's fragment program; triangles of every kind, and floats made "
+      "to fail; each is seen behind itself, by the programs with flags and with queries, in both "
+      "depth formats";
+  std::vector<ProbeResult> out;
+  for (const SolidKernel& kernel : solid_kernels())
+    out.push_back(result(kernel.name, tried, [&] { return solids(context, options, kernel); }));
+  return out;
+}
+
+std::vector<ProbeResult> all_probes(const GlContext& context,
+                                    const std::function<void(const std::string&)>& started,
+                                    bool brief) {
+  std::vector<ProbeResult> out = run_probes(context, {.brief = brief}, started);
+  if (started) started("kernels");
+  for (ProbeResult& r : solid_kernel_probes(context, {.brief = brief})) out.push_back(std::move(r));
+  std::ranges::stable_sort(out, {}, [](const ProbeResult& r) {
+    return std::pair(r.assumption.size(), r.assumption);  // A10 after A2
+  });
+  return out;
+}
+
+// ---- the verdict ----
 
 std::string utc_now() {
   const std::time_t seconds =

@@ -43,12 +43,11 @@ struct KernelProbeOptions {
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
-/// Runs run_probes() and the probes of kernels, in the order of the assumptions; `started` as for
-/// run_probes().
+/// Runs run_probes() and the probes of kernels, in the order of the assumptions. started: as for
+/// run_probes(). brief: about a third of the samples.
 std::vector<ProbeResult> all_probes(const GlContext& context,
-                                    const std::function<void(const std::string&)>& started = {});
-/// The same, but brief: about a third of the samples.
-std::vector<ProbeResult> brief_probes(const GlContext& context);
+                                    const std::function<void(const std::string&)>& started = {},
+                                    bool brief = false);
 
 // ---- the verdict ----
 

@@ -14,25 +14,17 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "verify/closest.h"
 #include "verify/exact.h"
+#include "verify/filter.h"
 #include "verify/inside.h"
 
 namespace farcull {
-namespace {
 
 // A *part* of an object is a connected component of its triangles, joined where they share a vertex
 // position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
 // path between two of them never crosses the mesh, and the winding number and the parity change
 // only at a crossing. So one vertex of each part decides. Whatever lies inside a closed mesh also
 // lies in the mesh's box, so boxes settle most pairs.
-
-bool lies_within(const Box& inner, const Box& outer) {
-  return (inner.lo.array() >= outer.lo.array()).all() &&
-         (inner.hi.array() <= outer.hi.array()).all();
-}
-
-}  // namespace
 
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   struct Corner {
@@ -482,6 +474,44 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   out.scene_hash = scene_hash(scene);
   out.degenerate_triangles = degenerate_triangles(scene);
   verify(scene, progress, out);
+  return out;
+}
+
+// Sorts the candidates into the order of the answer; then threads decide them in parts.
+std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,
+                                                          unsigned threads, std::size_t most,
+                                                          const Progress& progress) {
+  const FloatingPointGuard guard;
+  if (progress) progress(StageKind::boxes);
+  const ProximityTrees trees(scene, threads);
+  // Allows a quarter more, since some pairs turn out to be a little too far apart.
+  std::vector<TrianglePair> near = trees.pairs_within(within, most, progress, most / 4);
+  remove_ignored(scene, scene.ignored, near);
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto in_order = [&](const TrianglePair& pair) {
+    return std::pair(ObjectPair{owner[pair.a], owner[pair.b]}, pair);
+  };
+  if (!std::ranges::is_sorted(near, {}, in_order)) std::ranges::sort(near, {}, in_order);
+  if (progress) progress(StageKind::closest);
+  constexpr std::size_t kTogether = 1024;  // pairs that a thread decides at a time
+  std::vector<std::vector<TriangleContact>> out((near.size() + kTogether - 1) / kTogether);
+  for_each_shared(out.size(), threads, [&](std::size_t part) {
+    const std::span<const TrianglePair> pairs = std::span(near).subspan(
+        part * kTogether, std::min(kTogether, near.size() - part * kTogether));
+    std::array<Triage, kTogether> planes;
+    filter_pairs(scene, pairs, within, {planes.data(), pairs.size()});
+    out[part].reserve(pairs.size());
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto& [a, b] = pairs[k];
+      if (const auto contact =
+              contact_within(scene.corners(a), scene.corners(b), within, planes[k])) {
+        out[part].push_back({{owner[a], owner[b]}, pairs[k], *contact});
+      }
+    }
+  });
+  std::size_t count = 0;
+  for (const auto& part : out) count += part.size();
+  if (count > most) throw too_many_within(most, "triangles");
   return out;
 }
 

@@ -17,6 +17,7 @@
 #include "verify/certificate/integer_distance.h"
 #include "verify/closest.h"
 #include "verify/distance_accounting.h"
+#include "verify/near_contact.h"
 
 namespace farcull {
 
@@ -124,5 +125,20 @@ std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 /// null.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
+
+/// A pair of triangles within a distance, with points and normals.
+struct TriangleContact {
+  ObjectPair objects;
+  TrianglePair triangles;
+  NearContact contact;
+};
+
+/// The pairs of triangles at most `within` apart (finite, >= 0) that distances() with `all` gives:
+/// of different objects that are not ignored, or of one object marked `self` if they are no
+/// neighbours. Sorted by objects, then by triangles; split into consecutive parts. threads: 0 for
+/// as many as there are cores. Throws Error if there are more than `most` contacts.
+std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,
+                                                          unsigned threads, std::size_t most,
+                                                          const Progress& progress = {});
 
 }  // namespace farcull

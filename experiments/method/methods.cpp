@@ -86,6 +86,27 @@ static_assert([] {
   return true;
 }());
 
+// Counts the triangles of the objects that are in a pair or are tested against themselves.
+std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
+  std::vector<std::uint8_t> in(scene.objects.size(), 0);
+  for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
+  std::uint64_t triangles = 0;
+  for (std::size_t o = 0; o < in.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (in[o] != 0 || (object.self && object.triangle_count > 1))
+      triangles += object.triangle_count;
+  }
+  return triangles;
+}
+
+Stage sweep_stage(const Scene& scene) {
+  return {.kind = StageKind::sweep,
+          .ran = true,
+          .reason = Reason::sweep,
+          .in = scene.triangles.size(),
+          .unit = Unit::pairs};
+}
+
 }  // namespace
 
 const Traits& traits(Method method) { return kTable[static_cast<std::size_t>(method)]; }
@@ -158,31 +179,6 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
 
 // I-collide: sweep and prune on the boxes of objects, then on the boxes of their triangles
 // (I-COLLIDE, 1995).
-
-namespace {
-
-// Counts the triangles of the objects that are in a pair or are tested against themselves.
-std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
-  std::vector<std::uint8_t> in(scene.objects.size(), 0);
-  for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
-  std::uint64_t triangles = 0;
-  for (std::size_t o = 0; o < in.size(); ++o) {
-    const Object& object = scene.objects[o];
-    if (in[o] != 0 || (object.self && object.triangle_count > 1))
-      triangles += object.triangle_count;
-  }
-  return triangles;
-}
-
-Stage sweep_stage(const Scene& scene) {
-  return {.kind = StageKind::sweep,
-          .ran = true,
-          .reason = Reason::sweep,
-          .in = scene.triangles.size(),
-          .unit = Unit::pairs};
-}
-
-}  // namespace
 
 void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back(sweep_stage(scene));

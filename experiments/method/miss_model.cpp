@@ -17,9 +17,8 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kMostParts = std::size_t{1} << 22;  // in a view; 72 bytes each
-// Rounds in solve(), if their number is not limited. Mostly ten are enough; where one culled
-// triangle after another uncovers the next, tens. Far beyond, so that it only ends what never
-// settles.
+// The most rounds in solve() if the options do not limit them. Ten mostly suffice, and some tens if
+// each culled triangle uncovers the next. The limit only ends a search that never settles.
 constexpr int kMostRepeats = 200;
 // Standard deviation (px) of the error of a triangle's height over its longest edge. Snapping moves
 // corners to multiples of 2^-b px, an error of variance 4^-b / 12 along each axis. The error of the
@@ -98,10 +97,10 @@ Polygon hull(std::vector<Point2> of) {
 }
 
 // The sizes of an image along two axes in which it is compact. Axes of whole numbers with the
-// determinant 1 map pixel centres to pixel centres, so the probability to hold one is the same in
-// all of them: a needle along 2:3 is seen as the narrow strip between centres that it is.
-// Lagrange's reduction of the moments of its corners finds them. Once the longer size is below 1 px
-// the area is at most either size, so that sizes no longer matter.
+// determinant 1 map pixel centres to pixel centres. So the probability that the image holds a
+// centre is the same in all such axes, and in good ones a needle along 2:3 is a narrow strip.
+// Lagrange's reduction of the moments of the corners finds good axes. If the longer size is below
+// 1 px, the area is at most either size, so sizes no longer matter.
 std::array<double, 2> compact_sizes(const Polygon& image) {
   Point2 a{1, 0}, b{0, 1};
   while (true) {
@@ -204,7 +203,7 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
 // The part of a triangle that another one hides.
 struct Part {
   std::uint32_t of = 0, by = 0;
-  double share = 0;  // of the area of the image in its place
+  double share = 0;  // of the image's area in the place of this part
   Range x, y;
   double place = 0;  // area of the image in the place, at its first part; else 0
   double strip = 0, width = 0, height = 0;  // region where both hide each other: area and sides
@@ -434,7 +433,7 @@ class Equations {
       }
       const double p = part.by == surely ? 1 : stored(part, side);
       open += std::log1p(-p * part.share);
-      if (p >= 0.05) {  // rarely stored: p reduces its area, but would not reduce its extent
+      if (p >= 0.05) {  // a rarely stored part would add its whole extent
         x.add(part.x);
         y.add(part.y);
       }
@@ -446,7 +445,8 @@ class Equations {
     return std::min(1 - none, view.images[t].drawn);
   }
 
-  // The probability that one pixel centre keeps both, as fattened triangles can hide each other.
+  // The probability that one pixel centre keeps both triangles, since fattened ones can hide each
+  // other.
   double both_seen(std::size_t v, std::uint32_t a, std::uint32_t b) const {
     const ViewOfParts& view = views_[v];
     if (!(view.radius > 0)) return 0;

@@ -113,10 +113,9 @@ void take_option(std::string_view name, const std::string& text, RunOptions& opt
 /// Reads all given options that RunOptions holds, then validates. Throws Error naming the option
 /// that is bad.
 RunOptions read_options(const GivenOptions& given, RunOptions options = {});
-/// Throws Error naming an option whose value is out of its range.
-void require_range(const RunOptions& options);
-/// Throws Error as require_range(), for options that do not go together, and for an option that was
-/// given or has an unusual value but that the method does not have. Opens no device.
+/// Throws Error for an option whose value is out of its range, for options that do not go together,
+/// and for an option that was given or has an unusual value but that the method does not have.
+/// Opens no device.
 void validate(const RunOptions& options, const GivenOptions& given = {});
 
 /// A whole number of pixels, 1 or more. Throws Error naming `option`.

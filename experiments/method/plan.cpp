@@ -2,7 +2,6 @@
 #include "experiments/method/plan.h"
 
 #include <utility>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"

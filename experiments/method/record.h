@@ -42,14 +42,14 @@ struct SweptObjects {
 };
 
 struct Candidates {
-  std::vector<TrianglePair> pairs;       // sorted; empty if streamed
-  bool streamed = false;                 // pairs were decided as they were found, and not listed
-  std::uint64_t count = 0;               // of candidate pairs
-  std::uint64_t ignored = 0;             // candidates of ignored objects, which were removed
-  std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; for boxes
-                                         // run() fills it from the pairs; empty for a method that
-                                         // culls nothing, since it keeps all triangles
-  std::uint64_t triangle_count = 0;      // of the potentially colliding set
+  std::vector<TrianglePair> pairs;  // sorted; empty if streamed
+  bool streamed = false;            // pairs were decided as they were found, and not listed
+  std::uint64_t count = 0;          // of candidate pairs
+  std::uint64_t ignored = 0;        // candidates of ignored objects, which were removed
+  /// The potentially colliding set, ascending. For boxes run() fills it from the pairs. Empty for a
+  /// method that culls nothing, since it keeps all triangles.
+  std::vector<std::uint32_t> triangles;
+  std::uint64_t triangle_count = 0;  // of the potentially colliding set
   std::uint64_t object_count = 0;
   std::optional<Collisions> decided;  // the answers, if streamed
   /// The views of a drawing method, or the objects of a sweep.
@@ -89,9 +89,9 @@ struct RunTimes {
 
 /// Whether a miss would break a guarantee.
 struct Promise {
-  bool holds = false;  // the method is guaranteed() and the device that it used keeps
-                       // the assumptions on which the guarantee depends
-  std::string reason;  // why, or why not
+  /// The method is guaranteed(), and its device keeps the assumptions that the guarantee needs.
+  bool holds = false;
+  std::string reason;                    // why, or why not
   std::optional<DeviceVerdict> verdict;  // of that device; empty if the guarantee needs no device
 };
 
@@ -115,13 +115,14 @@ struct Record {
   bool complete = true;       // false: the limit was reached, so candidates are undecided, or
                               // colliding pairs after the last one listed are left out
   bool limited = false;       // the limit ended the search, so nothing accounts for the pairs
-  std::vector<ContactShape> contacts;            // of collisions.pairs, if contacts are asked for
-  std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs, likewise. Both:
-                                                 // only the kinds, unless segments are asked for
-  std::optional<Accounting> verification;        // with at most kExamples examples
-  std::optional<ContactCounts> missed;  // how many missed pairs touch, and how many penetrate; set
-                                        // with a verification and without a clearance
-  std::optional<PairsAtRisk> risk;      // if pairs_at_risk() was asked
+  /// Of collisions.pairs and collisions.neighbour_pairs, if contacts are asked for; only the kinds,
+  /// unless segments are asked for.
+  std::vector<ContactShape> contacts, neighbour_contacts;
+  std::optional<Accounting> verification;  // with at most kExamples examples
+  /// How many missed pairs touch, and how many penetrate; set with a verification and without a
+  /// clearance.
+  std::optional<ContactCounts> missed;
+  std::optional<PairsAtRisk> risk;  // if pairs_at_risk() was asked
   RunTimes ms;
   FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
 };

@@ -8,14 +8,12 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "core/boxes/join.h"
 #include "core/scene/pair_sort.h"
-#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {
@@ -250,6 +248,34 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
+// The guarantee of the method on the device that it used, by the session's verdict about the
+// device. After an exception the session has forgotten its device, as after find().
+Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
+  Promise promise;
+  promise.holds = guaranteed(options);
+  promise.reason =
+      promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
+  if (!promise.holds || !device.relies) return promise;
+  try {
+    promise.verdict = session.verdict();
+  } catch (...) {
+    session.forget_device();
+    throw;
+  }
+  promise.holds = promise.verdict->holds;
+  promise.reason = to_string(*promise.verdict);
+  return promise;
+}
+
+// One contact for each pair. contacts: kinds or segments.
+std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
+                                      ContactDetail contacts, unsigned threads) {
+  if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
+  std::vector<ContactShape> out;
+  for (const ContactKind kind : contact_kinds(scene, pairs, threads)) out.push_back({.kind = kind});
+  return out;
+}
+
 // Finds the kinds of contact, if the options ask for them.
 void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const ContactDetail asked = record.options.contacts;
@@ -282,23 +308,6 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session, const Pr
     session.forget_device();
     throw;
   }
-}
-
-Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
-  Promise promise;
-  promise.holds = guaranteed(options);
-  promise.reason =
-      promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
-  if (!promise.holds || !device.relies) return promise;
-  try {
-    promise.verdict = session.verdict();
-  } catch (...) {
-    session.forget_device();
-    throw;
-  }
-  promise.holds = promise.verdict->holds;
-  promise.reason = to_string(*promise.verdict);
-  return promise;
 }
 
 Record run(const Scene& scene, const RunOptions& options, Session& session,
@@ -361,15 +370,6 @@ FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& cand
                        const ExactQuestion& question, std::uint64_t limit) {
   if (limit > 0) return decide_first(scene, candidates, limit, question);
   return {.collisions = decide(scene, candidates, question), .decided = candidates.size()};
-}
-
-std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
-                                      ContactDetail contacts, unsigned threads) {
-  if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
-  std::vector<ContactShape> out;
-  if (contacts == ContactDetail::none) return out;
-  for (const ContactKind kind : contact_kinds(scene, pairs, threads)) out.push_back({.kind = kind});
-  return out;
 }
 
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record) {

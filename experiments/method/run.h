@@ -24,10 +24,6 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
                 bool marks = true);
 
-/// The guarantee of the method on the device that it used, by the session's verdict about the
-/// device. After an exception the session has forgotten its device, as after find().
-Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);
-
 /// How a caller of run() uses it, besides the options of the user.
 struct RunUse {
   /// Removes candidates that are left to other runs (tiles). Called before the exact tests, but
@@ -61,10 +57,6 @@ std::optional<PairsAtRisk> pairs_at_risk(const Scene& scene, const Record& recor
 /// Decides candidates by exact predicates: all of them, or until `limit` of them collide (if > 0).
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit);
-
-/// One contact for each pair, with the detail asked for; empty if that is `none`.
-std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
-                                      ContactDetail contacts, unsigned threads);
 
 /// How many of the colliding pairs, neighbours included, have each kind of contact; all kinds in
 /// their order.

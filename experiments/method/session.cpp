@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/method/device_verdict.h"
 #include "experiments/method/options.h"
 
 namespace farcull {
@@ -23,7 +22,7 @@ const GlContext& Session::context() {
 
 const DeviceVerdict& Session::verdict() {
   if (!verdict_) {
-    const Probes probes = [this] { return brief_probes(context()); };
+    const Probes probes = [this] { return all_probes(context(), {}, true); };
     verdict_ = device_verdict(context().info(), probes, say_);
   }
   return *verdict_;

@@ -10,8 +10,8 @@
 #include <climits>
 
 #include "tests/lab/parts.h"
+#include "verify/convex_core.h"
 #include "verify/inside.h"
-#include "verify/separates.h"
 
 namespace farcull {
 namespace {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -53,9 +52,8 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
   const Corners b = scene.corners(pair.b);
   IntegerPair integers(a, b, clearance);
   const std::uint8_t flag = kept ? kKept : 0;
-  if (one_object && integers.shares_position()) {
+  if (one_object && integers.shares_position())
     return !kept && integers.meets_beyond_shared() ? kMeets : flag | kNeighbours;
-  }
   if (const int guess = likely_direction(a, b, clearance); integers.separated_by(guess))
     return flag | guess;
   const std::optional<int> direction = integers.separating_direction();

@@ -6,14 +6,13 @@
 // count meet. A pair counts if its triangles are of different objects, or of one object marked
 // `self`. The certificate names the list of the pairs that meet by its hash, so that a written list
 // is proved, too. Neighbours (verify/exact.h) meet iff they share more than their shared part.
-// Pairs whose boxes are disjoint need no evidence. Nothing is proved about the run: neither how it
-// came to its answer (Run) nor which pairs it kept. A certificate that calls a pair culled although
-// the pair meets is refuted. If it calls such a pair kept, its claim about the scene is true,
-// whatever the run did.
+// Pairs whose boxes are disjoint need no evidence. With a clearance D > 0, "meets" means "is at
+// distance D or less", "overlap" means "are no farther apart than D", and "disjoint" means "farther
+// apart than D"; neighbours, whose distance is 0, are decided as without a clearance.
 //
-// With a clearance D > 0 read "meets" as "is at distance D or less", "overlap" as "are no farther
-// apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
-// decided as without a clearance.
+// Nothing is proved about the run: neither how it came to its answer (Run) nor which pairs it kept.
+// A certificate is refuted if it calls a pair culled that meets. If it calls such a pair kept, its
+// claim about the scene is true, whatever the run did.
 //
 // The certificate of a tile (docs/tiles.md) is only about the pairs that belong to the tile. The
 // certificates of tiles that together cover an axis from end to end prove the whole list.
@@ -123,20 +122,21 @@ struct WholeScene {
   Certificate::Unasked not_asked;
 };
 
-/// The key, and what is not asked, of the scene itself.
+/// The key of the scene, and what the scene does not ask about.
 Certificate::SceneKey key_of(const Scene& scene);
 Certificate::Unasked unasked_of(const Scene& scene);
 
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
 /// the kept pairs that the run found to meet, neighbours included. Both are sorted, each pair once,
-/// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. Throws
-/// std::logic_error otherwise. Errors of the run are written as the run made them, so that the
-/// check refutes them. A kept pair is said to meet iff it is in `colliding`. If the run calls a
-/// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept (neighbours:
-/// kNeighbours), and kMeets if it was culled. The hash of the list is that of `colliding`. With a
-/// clearance > 0, kept pairs whose boxes are farther apart than the clearance are left out: they
-/// need no evidence, and a method may keep such pairs. whole: not null if the run was on a tile;
-/// then all pairs belong to the tile.
+/// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. whole: not null
+/// if the run was on a tile; then all pairs belong to the tile. Throws std::logic_error otherwise.
+///
+/// Errors of the run are written as the run made them, so that the check refutes them. A kept pair
+/// is said to meet iff it is in `colliding`, which also gives the hash of the list. If the run
+/// calls a pair disjoint but no direction proves it, the pair gets direction 0 if it was kept
+/// (neighbours: kNeighbours), and kMeets if it was culled. With a clearance > 0, kept pairs whose
+/// boxes are farther apart than the clearance are left out: a method may keep such pairs, but they
+/// need no evidence.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0, const WholeScene* whole = nullptr);

@@ -168,7 +168,8 @@ class Tally {
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == EvidenceFault::as_claimed) return;
-    // Names the first pair that refutes; before one is found, the first that is not proved.
+    // Names the first pair that refutes. As long as there is none, names the first that is not
+    // proved.
     const bool refuted = refutes(decision.finding);
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;

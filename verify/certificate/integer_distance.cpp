@@ -3,7 +3,6 @@
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -16,7 +15,6 @@
 
 #include "verify/certificate/integer_pair.h"
 #include "verify/certificate/integer_witnesses.h"
-#include "verify/certificate/integers.h"
 
 namespace farcull {
 
@@ -29,8 +27,8 @@ constexpr int kFace = 6;
 
 bool is_corner(int feature) { return feature < 3; }
 
-/// Constructs the only two points of these features that can be nearest points, provided that no
-/// earlier pair of features has nearest points. False: there are none.
+/// Constructs the only two points of these features that can be nearest points, if no earlier pair
+/// of features has nearest points. False if there are no such points.
 bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int of_a, int of_b) {
   const auto& [a, b, exponent] = pair;
   if (is_corner(of_a)) {
@@ -135,6 +133,8 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
   return false;
 }
 
+enum class IntegerSurface : std::uint8_t { open, closed, oriented };
+
 // Counts the crossings along a ray in the direction of the first axis. The ray starts a little
 // beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
 // infinitely small. So the ray meets no edge, and one ray is enough. The sign of a polynomial in e
@@ -172,12 +172,6 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   }
   return true;
 }
-
-}  // namespace
-
-enum class IntegerSurface : std::uint8_t { open, closed, oriented };
-
-namespace {
 
 /// Is x inside the closed mesh? Empty if x lies on a triangle that the ray crosses.
 std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x,

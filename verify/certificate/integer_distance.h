@@ -1,16 +1,13 @@
-// Computes the exact distance of two triangles with the features that realise it, and proves that
-// two triangles are no nearer than some length. Both in integers. For the accounting of distances,
-// so this file uses neither CGAL nor verify/closest. docs/proximity.md has the theorems.
-//
-// Semantics as in verify/exact.h: closed convex hulls of the three corners, degenerate triangles
-// included. Preconditions: finite coordinates; subnormals are not flushed to zero.
+// The exact distance of two triangles with the features that realise it, and the proof that two
+// triangles are no nearer than some length. Both in integers. For the accounting of distances, so
+// this file uses neither CGAL nor verify/closest. docs/proximity.md has the theorems. Triangles are
+// as in verify/exact.h; subnormals are not flushed to zero.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "core/scene/scene.h"
 #include "verify/certificate/integers.h"
@@ -49,15 +46,9 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
 bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
                bool or_as_far);
 
-// Decides in integers whether one of two objects lies inside the other. For the accounting, so this
-// part uses neither verify/inside nor experiments/method/distances. docs/proximity.md has the
-// proof.
-//
-// A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
-// triangles; triangles with two equal corners do not count. It is *oriented* if its triangles also
-// pass each edge equally often in both directions. A point off the mesh is *inside* an oriented
-// mesh if a ray from the point does not cross the mesh equally often from both sides; inside
-// another closed mesh, if the ray crosses it an odd number of times.
+// Decides in integers whether one of two objects lies inside the other, by the definitions of
+// verify/inside.h. For the accounting, so this part uses neither verify/inside nor
+// experiments/method/distances. docs/proximity.md has the proof ("One object inside another").
 
 /// a, b: this object is inside the other, with all of its points. none: neither object is inside
 /// the other. not_closed: neither is inside the other, but the box of one is in the box of the

@@ -7,11 +7,11 @@
 // and from there on nothing is rounded and nothing can overflow. The integers are GMP's, or machine
 // integers if the scaled coordinates are short enough for a bound that is proved beside the code.
 //
-// Semantics as in verify/exact.h: closed convex hulls of the three corners, touching counts, a
-// degenerate triangle is the segment or the point that it is. docs/certificate.md proves that one
-// of the 38 directions separates every disjoint pair, and one of 21 points shows that any other
-// pair meets. With a clearance, the same directions show every pair that is farther apart, and 42
-// pairs of points or the 21 points show every other pair.
+// Triangles are as in verify/exact.h: touching counts, and a degenerate triangle is the segment or
+// the point that it is. docs/certificate.md proves that one of the 38 directions separates every
+// disjoint pair, and one of 21 points shows that any other pair meets. With a clearance, the same
+// directions show every pair that is farther apart, and 42 pairs of points or the 21 points show
+// every other pair.
 #pragma once
 
 #include <array>

@@ -114,12 +114,12 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
   return or_as_far ? s.w[1] >= s.w[2] : s.w[1] > s.w[2];
 }
 
-/// True iff the direction s.d proves that a and b share no more than their shared part; shared_a
-/// and shared_b are the corners that a and b have in common. If a plane perpendicular to d has all
-/// of a on one side and all of b on the other, the triangles meet only in the plane, where each is
-/// the hull of its corners in the plane. What they share is no more than the shared part if all
-/// corners of one triangle that lie in the plane are shared, or if an edge of each lies in the
-/// plane and the edges are not parallel (d is their product).
+/// True iff the direction s.d proves that a and b share no more than their shared part. shared_a,
+/// shared_b: the corners that a and b have in common. The proof: a plane perpendicular to d has all
+/// of a on one side and all of b on the other. So the triangles meet only in the plane, where each
+/// is the hull of its corners in the plane. These hulls share no more than the shared part if all
+/// corners of one hull are shared, or if both hulls are edges that are not parallel (d is their
+/// product).
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
@@ -155,9 +155,9 @@ inline int most_bits(int direction) {
   return direction < 11 ? 41 : 30;
 }
 
-// The 21 points of a pair of triangles: corners, edges with planes, edges with edges; and, for a
-// clearance, 42 pairs of points, one on each triangle. Each point is a vector of integers over one
-// integer.
+// The 21 points of a pair of triangles: corners, points of edges in planes, and points of edges
+// near edges. For a clearance, 42 pairs of points, one on each triangle. Each point is a vector of
+// integers over one integer.
 
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;

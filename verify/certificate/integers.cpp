@@ -1,10 +1,6 @@
 // A rounded root is only a guess, so its exact square is compared with the fraction.
 #include "verify/certificate/integers.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace farcull {
 namespace {
 

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-// The versions are the same except that the second has a clearance, and the third a tile as well.
+// Version 4 is version 3 with a clearance, and version 5 is version 4 with a tile.
 constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile = 5;
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
@@ -83,11 +83,11 @@ class Syntax : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
 };
 
-/// Readers of values. place: the path of the value, as in unattested.views[1].width. Each throws
-/// Error naming the file if the value is of another kind.
+/// Functions that read values. place: the path of the value, as in unattested.views[1].width. Each
+/// function throws Error naming the file if the value is of another kind.
 class Reader {
  public:
-  /// name: of the file.
+  /// name: the name of the file.
   explicit Reader(const std::string& name) : name_(name) {}
 
   [[noreturn]] void fail(const std::string& reason) const { throw Error(name_, reason, kRemedy); }

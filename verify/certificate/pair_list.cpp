@@ -3,7 +3,6 @@
 #include "verify/certificate/pair_list.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <limits>
 #include <utility>
@@ -259,7 +258,7 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
     out.wrong_reason = std::move(why);
     out.wrong_pair = pair.a == pair.b ? std::nullopt : std::optional(pair);
   };
-  struct Meeting {  // a row whose pair meets
+  struct Meeting {  // a row of the list whose pair meets
     TrianglePair pair;
     std::uint64_t line;
     bool wrong;  // its entry in `neighbours` is wrong

@@ -1,9 +1,12 @@
-// Stores or asks one fragment. FAR_VALUE: also writes out the fragment's depth in px. FAR_PROXY:
-// the depth comes from the solid's data, by its function (in front of this text): the entry when
-// storing, the exit when asking. FAR_ASK: asks; the define's value is a slack (kAskedBehind), which
-// moves the asked depth behind the exit's. FAR_FLAGS: an asked fragment that is seen raises its
-// slot's flag by writing this pass's serial number there. Proxies compare with the stored depth
-// here, for triangles the depth test decides. Without FAR_FLAGS an occlusion query decides.
+// Stores or asks one fragment, by these defines:
+// FAR_PROXY: the depth comes from the solid's data, by its function (in front of this text). It is
+// the entry when storing, the exit when asking.
+// FAR_ASK: asks instead of storing. The define's value is a slack (kAskedBehind), by which the
+// asked depth lies behind the exit's.
+// FAR_FLAGS: an asked fragment that is seen raises its slot's flag: it writes this pass's serial
+// number there. Proxies are compared with the stored depth here, triangles by the depth test.
+// Without FAR_FLAGS an occlusion query decides.
+// FAR_VALUE: also writes out the fragment's depth in px.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
 uniform float u_scale;   // of the depth map

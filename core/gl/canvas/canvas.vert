@@ -1,9 +1,9 @@
 // Fetches an element for each draw of a batch (draws of one step that read one element buffer) and
 // places it. FAR_PROXY: an element is seven vec4, a quadrilateral of two triangles that share the
 // corners of a diagonal. Otherwise: three vec4, a triangle.
-// FAR_ECHO: the buffers have tags. The draws of a batch follow its head: this pass's serial number,
-// and the batch's word of the report. To that word the first vertex of the batch writes an echo: a
-// checksum (core/gl/base/objects.h) of what both stages read.
+// FAR_ECHO: the buffers have tags. A batch begins with a head: this pass's serial number, and the
+// batch's word of the report. The first vertex of the batch writes an echo to that word: a checksum
+// (core/gl/base/objects.h) of what both stages read.
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
@@ -29,7 +29,7 @@ flat out uint v_fixed;  // 1: the canvas's own element: fixed depth, drawn outsi
 #ifdef FAR_PROXY
 flat out vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
 #endif
-// So that a control item is asked at exactly the depth that another program stored.
+// A control item must be asked at exactly the depth that another program stored.
 invariant gl_Position;
 
 #ifdef FAR_ECHO

@@ -50,7 +50,8 @@ class Layout {
   }
 
   CanvasPass finish() {
-    if (out_.list.size() % 2 != 0) out_.list.push_back({0, 0});  // sums take 16 bytes at a time
+    if (out_.list.size() % 2 != 0)
+      out_.list.push_back({0, 0});  // the device sums 16 bytes at a time
     return std::move(out_);
   }
 
@@ -171,8 +172,8 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
 // Selects the stored elements with these bytes; false: the caller must write them. A scene that
 // does not change has one set of elements for each view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // besides `current`
-  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes; a larger one drops the earlier
+  constexpr std::size_t kEarlier = 2;                       // sets that are kept besides `current`
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
   };

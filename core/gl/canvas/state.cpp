@@ -331,7 +331,7 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Off for the canvas's own elements: they cover exactly the pixels that are meant.
+// Conservative rasterization is off for the canvas's own elements, which are exact without it.
 void CanvasState::set_conservative(bool on) const {
   if (conservative != 0) set_enabled(conservative, on, "conservative rasterization");
 }

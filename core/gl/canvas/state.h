@@ -2,12 +2,14 @@
 // and done (assumption A7), and the state. For core/gl/canvas alone.
 //
 // The canvas draws elements besides those of the caller: the quad for kEverywhere, and control
-// items, which reveal lost commands. They are in corner pixels of the render target, outside the
-// window. In pixel 0 the k-th store of a pass leaves the depth kControlTop - k * kControlGap. The
-// next ask has a control item at that depth (half a gap behind it if equal depths are not seen). It
-// is seen only if that store ran. Each pass stores a mark (the depth kMark) in pixel 1 or 2, in
-// turn, and asks at kAsked in the other one, which the previous pass marked. This is seen unless
-// the buffer was cleared in between.
+// items in the first pixels of the render target, outside the window. Control items reveal lost
+// commands:
+// - Pixel 0: the k-th store of a pass leaves the depth kControlTop - k * kControlGap. The next ask
+// has a control item at that depth (half a gap behind it if equal depths are not seen), which is
+// seen only if the store ran.
+// - Pixels 1 and 2: each pass stores a mark (the depth kMark) in one of them, in turn. In the other
+// one it asks, at kAsked, for the mark of the previous pass. That control item is seen, and the
+// pass fails, if the buffer was not cleared in between.
 #pragma once
 
 #include <array>
@@ -45,12 +47,14 @@ constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 
 /// All that a pass sends.
 struct CanvasPass {
-  std::uint32_t serial = 0;   // unique among the passes of the process
-  std::vector<GpuDraw> list;  // two entries in place of the store's tag, then the batches; each
-                              // begins with its head {serial, word of the report}
-  std::vector<float> own;     // the canvas's own elements
+  std::uint32_t serial = 0;  // unique among the passes of the process
+  /// Two entries in place of the store's tag, then the batches, each with a head in front: {serial,
+  /// word of the report}.
+  std::vector<GpuDraw> list;
+  std::vector<float> own;  // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  std::uint32_t slots = 0;  // the caller's, one that must stay unseen (with marks), control items'
+  /// The caller's slots, with marks a slot that must stay unseen, and those of control items.
+  std::uint32_t slots = 0;
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
   }

@@ -3,13 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/gl/base/objects.h"
-#include "core/view/view.h"
 
 namespace farcull {
 namespace {

@@ -8,7 +8,6 @@
 #include "core/gl/probe/probe.h"
 #include "core/gl/probe/target.h"
 #include "embedded/canvas_frag.h"
-#include "embedded/probe_arithmetic_glsl.h"
 #include "embedded/probe_frag.h"
 
 namespace farcull::probe {
@@ -72,7 +71,7 @@ std::vector<Operands> make_operands(Random& random) {
         b = neighbour(a, random.below(7) - 3);
         if (random.below(2)) b = -b;
         break;
-      case 4:  // b far larger than a: (a - b) + b is not a
+      case 4:  // b is far larger than a, so (a - b) + b differs from a
         a = random.normal(-40, 40);
         b = std::ldexp(random.normal(0, 0), 1 + random.below(30)) * a;
         break;
@@ -136,7 +135,8 @@ void damage(float& x) { x = from_bits(std::bit_cast<std::uint32_t>(x) ^ 1u << 22
 
 void operations(const ProbeOptions& options, std::vector<ProbeResult>& out) {
   const std::string loose = options.loose_text ? "#undef FAR_PRECISE\n#define FAR_PRECISE\n" : "";
-  const GlProgram program = proxy_program("arithmetic", {loose, embedded::probe_arithmetic_glsl});
+  const GlProgram program =
+      proxy_program("arithmetic", {loose, embedded::probe_frag}, {"FAR_ARITHMETIC"});
   Target target(kWidth, kHeight);
   target.upload({box(-0.5 * kWidth, -0.5 * kHeight, 0.5 * kWidth, 0.5 * kHeight)});
   GlBuffer input = gl_make<GlBuffer>(glGenBuffers), results;
@@ -202,9 +202,9 @@ ProbeResult transport(const ProbeOptions& options) {
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// Runs canvas.frag itself on sorted depths. The mapped depths must not decrease, and must lie in
-// [1/4, 3/4], those of exits up to kAskedBehind beyond. If an entry and an exit have the same
-// depth, the exit must not be mapped before the entry.
+// Runs canvas.frag itself on sorted depths. The mapped depths must not decrease. Entries must be
+// mapped into [1/4, 3/4], exits at most kAskedBehind beyond it. If an entry and an exit have the
+// same depth, the exit must not be mapped before the entry.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;

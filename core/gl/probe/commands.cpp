@@ -142,11 +142,11 @@ ProbeResult dispatches(const ProbeOptions& options) {
   const GlProgram program = step_program(1, false);
   Random random(options.seed + 11);
   std::vector<std::uint32_t> expected(kTakers), next(kTakers);
-  for (std::uint32_t& x : expected) x = static_cast<std::uint32_t>(random.bits());
+  for (std::uint32_t& x : expected) x = static_cast<std::uint32_t>(random.word());
   GlBuffer buffers[2] = {gl_make<GlBuffer>(glGenBuffers), gl_make<GlBuffer>(glGenBuffers)};
   for (const GlBuffer& b : buffers) gl_fill(b, expected.data(), kTakers * sizeof(std::uint32_t));
   for (std::uint32_t link = 0; link < kLinks; ++link) {
-    const auto salt = static_cast<std::uint32_t>(random.bits());
+    const auto salt = static_cast<std::uint32_t>(random.word());
     const std::uint32_t from = link % 2, to = options.unordered_reads ? from : 1 - from;
     run(program, buffers[from], buffers[to], kTakers, salt);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -13,9 +13,9 @@ namespace {
 constexpr int kSide = 160;
 constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
-// Random depths of a layer, one for each pixel: in the range of the canvas's depth map, at its
-// ends, at depths of control items (core/gl/canvas/state.h), or anywhere; also depths that equal
-// those of the layer `beside` or are next to them.
+// Random depths of a layer, one for each pixel. Some are in the range of the canvas's depth map, at
+// its ends, at depths of control items (core/gl/canvas/state.h), or anywhere. Others equal the
+// depth of the layer `beside` in their pixel, or are next to it.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {

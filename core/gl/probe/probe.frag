@@ -4,6 +4,7 @@
 // discard, which never happens.
 // FAR_DEPTH: writes a given depth, and a colour that marks the pixel if the depth test passes.
 // (Buffer writes would also happen for fragments that fail a late depth test.)
+// FAR_ARITHMETIC: stores the results of the operations that kernels use, as bits, unchanged.
 // Otherwise: returns the bits that reach a fragment in flat varyings (20 words a slot) and in
 // uniforms (256 words in all).
 #if defined(FAR_COVERAGE)
@@ -33,6 +34,36 @@ layout(location = 0) out uint mark;
 void main() {
   gl_FragDepth = v_solid4.z;
   mark = v_slot + 1u;
+}
+#elif defined(FAR_ARITHMETIC)
+layout(std430, binding = 2) readonly buffer Operands { vec4 operands[]; };  // a, b, c, -
+layout(std430, binding = 3) writeonly buffer Results { uvec4 results[]; };  // three for each case
+
+void probe_case(uint i) {
+  float a = operands[i].x;
+  float b = operands[i].y;
+  float c = operands[i].z;
+  FAR_PRECISE float sum = a + b;
+  FAR_PRECISE float difference = a - b;
+  FAR_PRECISE float product = a * b;
+  FAR_PRECISE float quotient = a / b;
+  FAR_PRECISE float chain = difference + b;   // a, if the compiler simplifies
+  FAR_PRECISE float remainder = product - c;  // the product's rounding error, if it is fused
+  float least = min(a, b);
+  float most = max(a, b);
+  float size = abs(a);
+  uint order = (a < b ? 1u : 0u) | (a <= b ? 2u : 0u) | (a > b ? 4u : 0u) | (a >= b ? 8u : 0u) |
+               (a == b ? 16u : 0u) | (a != b ? 32u : 0u);
+  results[3u * i] = floatBitsToUint(vec4(sum, difference, product, quotient));
+  results[3u * i + 1u] = floatBitsToUint(vec4(chain, remainder, least, most));
+  results[3u * i + 2u] = uvec4(floatBitsToUint(size), order, floatBitsToUint(a), floatBitsToUint(c));
+}
+
+uniform uint u_width;  // of the target, px
+
+void main() {
+  uvec2 pixel = uvec2(floor(gl_FragCoord.xy));
+  probe_case(pixel.y * u_width + pixel.x);
 }
 #else
 flat in uint v_slot;

@@ -88,13 +88,14 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
       if (direction == Direction::upright) turn = (side % 2) * std::numbers::pi;
       if (direction == Direction::level) turn = (side % 2 + 0.5) * std::numbers::pi;
       if (direction == Direction::diagonal) turn = (side * 0.5 + 0.25) * std::numbers::pi;
-      if (direction == Direction::any) turn = random.in(0, 2 * std::numbers::pi);
-      // Rounded, so that an upright edge has one x.
+      if (direction == Direction::any) turn = random.between(0, 2 * std::numbers::pi);
+      // The normal is rounded, so that both ends of an upright edge have the same x.
       const double nx = std::round(std::cos(turn) * 0x1p20) * 0x1p-20;
       const double ny = std::round(std::sin(turn) * 0x1p20) * 0x1p-20;
-      const double delta = random.in(-reach, reach);
+      const double delta = random.between(-reach, reach);
       const double ex = cx + nx * delta, ey = cy + ny * delta;
-      const double l0 = random.in(1, 1.5), l1 = random.in(1, 1.5), depth = random.in(1, 1.5);
+      const double l0 = random.between(1, 1.5), l1 = random.between(1, 1.5),
+                   depth = random.between(1, 1.5);
       std::array<std::array<double, 2>, 4> p = {
           {{ex - ny * l0, ey + nx * l0},
            {ex + ny * l1, ey - nx * l1},
@@ -118,12 +119,12 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
 
 // Four points on an ellipse: a convex quadrilateral of any direction and thinness inside the box.
 Proxy random_quad(Random& random, double cx, double cy, double half_width, double half_height) {
-  const double turn = random.in(0, 2 * std::numbers::pi);
-  const double thin = std::exp2(-random.in(0, 10));
+  const double turn = random.between(0, 2 * std::numbers::pi);
+  const double thin = std::exp2(-random.between(0, 10));
   std::array<double, 4> at{};
   const bool rectangle = random.below(2) != 0;
-  const double a = random.in(0, std::numbers::pi / 2);
-  for (double& t : at) t = random.in(0, 2 * std::numbers::pi);
+  const double a = random.between(0, std::numbers::pi / 2);
+  for (double& t : at) t = random.between(0, 2 * std::numbers::pi);
   if (rectangle) at = {a, std::numbers::pi - a, std::numbers::pi + a, 2 * std::numbers::pi - a};
   std::sort(at.begin(), at.end());
   std::array<double, 8> corners{};
@@ -241,8 +242,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
         // If cells have the size of a pixel, every other corner stays on a pixel centre.
         const double shake = border || (cell == 1 && (i + j) % 2 == 0) ? 0 : 0.2 * cell;
         points[static_cast<std::size_t>(j) * (n + 1) + i] = {
-            (i - middle) * cell + 0.5 + random.in(-shake, shake),
-            (j - middle) * cell + 0.5 + random.in(-shake, shake)};
+            (i - middle) * cell + 0.5 + random.between(-shake, shake),
+            (j - middle) * cell + 0.5 + random.between(-shake, shake)};
       }
     }
     std::vector<Proxy> proxies;

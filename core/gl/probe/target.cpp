@@ -1,11 +1,9 @@
 // Runs the groups of probes one after the other. A group that ends with an Error fails, and the
 // next one runs. The render target that they share draws with the canvas's vertex program.
-#include "core/gl/probe/probe.h"
 
 #include <algorithm>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "core/gl/probe/target.h"
 #include "embedded/canvas_vert.h"
 
@@ -46,7 +44,7 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
 namespace probe {
 
 float Random::normal(int lowest, int highest) {
-  const std::uint64_t r = bits();
+  const std::uint64_t r = word();
   const int exponent = lowest + below(highest - lowest + 1);
   std::uint32_t mantissa = static_cast<std::uint32_t>(r) & 0x7fffff;
   // Roundings go wrong most easily at the ends of a binade and at mantissas with few bits.

@@ -2,16 +2,14 @@
 // proxies as the canvas does. For core/gl/probe alone.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/gl/base/objects.h"
 #include "core/gl/canvas/canvas.h"
 #include "core/gl/probe/probe.h"
@@ -30,21 +28,12 @@ Group commands;     // A7
 Group memory;       // A8
 Group driver;       // A10
 
-/// Gives the same numbers with every standard library: the standard specifies its engines, but not
-/// its distributions.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  std::uint64_t bits() { return engine_(); }
-  double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // [0, 1)
-  double in(double lo, double hi) { return lo + (hi - lo) * unit(); }
-  int below(int n) { return static_cast<int>(bits() >> 33) % n; }
+struct Random : RandomNumbers {
+  using RandomNumbers::RandomNumbers;
+  int below(int n) { return static_cast<int>(word() >> 33) % n; }
   /// A normal float of either sign, exponent lowest .. highest.
   float normal(int lowest, int highest);
-  float in_float(double lo, double hi) { return static_cast<float>(in(lo, hi)); }
-
- private:
-  std::mt19937_64 engine_;
+  float in_float(double lo, double hi) { return static_cast<float>(between(lo, hi)); }
 };
 
 /// The float that is `steps` floats above x (below x if negative).

@@ -17,9 +17,11 @@ Definition lower_place (e : Z) (place : option double) : Z :=
 Definition scaled (e : Z) (d : double) : Z :=
   mantissa d * Z.of_N (N.shiftl 1 (Z.to_N (exponent d - e))).
 
-(** * The triangles that a tile needs: those that begin before its end, and of which a corner is not
-      before its beginning, or less than [reach] before it. The reader calls [keep] for each triangle
-      of a scene, so that it holds no others; [gathered] says what it has in the end. *)
+(** * The triangles that a tile needs
+
+    They begin before its end, and have a corner that is not before its beginning, or less than
+    [reach] before it. The reader calls [keep] for each triangle of a scene, so that it holds no
+    others; [gathered] says what it has in the end. *)
 Record named := Named { of_object : Z; number : Z; inner : bool; corners : triangle double }.
 Definition is_below (d place : double) : bool :=
   let e := Z.min (exponent d) (exponent place) in scaled e d <? scaled e place.
@@ -40,7 +42,7 @@ Definition keep (b : tile) (reach : double) (o i : Z) (inner : bool) (t : triang
   (done : list named) : list named :=
   if is_needed b reach t then Named o i inner t :: done else done.
 
-(** The last one first. *)
+(** The triangle that was kept last comes first. *)
 Fixpoint keep_triangles (b : tile) (reach : double) (o i : Z) (inner : bool)
   (l : list (triangle double)) (done : list named) : list named :=
   match l with
@@ -115,8 +117,10 @@ Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
 Definition separated (clearance : Z) (a b : triangle Z) : bool :=
   existsb (fun d => separates clearance a b (vector a b d)) directions.
 
-(** * A common point. Three weights stand for the point of a triangle that they make of its corners,
-      times their sum. *)
+(** * A common point
+
+    Three weights stand for a point of a triangle: the sum of its corners, each times its weight. It
+    is the point times the sum of the weights. *)
 Definition total (w : vec Z) : Z := x w + y w + z w.
 Definition weigh (w : vec Z) (t : triangle Z) : vec Z :=
   add (add (scale (x w) (p1 t)) (scale (y w) (p2 t))) (scale (z w) (p3 t)).
@@ -134,7 +138,7 @@ Definition off_segment (c d p : vec Z) (m : Z) : bool :=
 Definition off_shared (shared : list (vec Z)) (p : vec Z) (m : Z) : bool :=
   forallb (fun c => forallb (fun d => off_segment c d p m) shared) shared.
 
-(** Weights p and q for corner i and the next one. *)
+(** Weight p for corner i, and weight q for the next corner. *)
 Definition on_edge (i : index) (p q : Z) : vec Z :=
   match i with I1 => Vec p q 0 | I2 => Vec 0 p q | I3 => Vec q 0 p end.
 (** The point of edge i that is n / d of the way along it. *)
@@ -171,7 +175,7 @@ Definition shows (good : vec Z -> Z -> bool) (a b : triangle Z) (p : probe) : bo
   are_weights u &&
   let q := weigh u a in
   existsb (fun v => is_common a b u v && good q (total u)) (locate b q (total u)).
-(** A common point is found that is good; [good p m] judges the point p / m. *)
+(** True if a good common point is found; [good p m] judges the point p / m. *)
 Definition has_common (good : vec Z -> Z -> bool) (a b : triangle Z) : bool :=
   existsb (shows good a b) probes || existsb (shows good b a) probes.
 
@@ -180,7 +184,8 @@ Definition are_within (n m : Z) (a b : triangle Z) (u v : vec Z) : bool :=
   let k := total u in let l := total v in
   let w := sub (scale l (weigh u a)) (scale k (weigh v b)) in let r := k * l in
   are_weights u && are_weights v && (m * dot w w <=? n * (r * r)).
-(** Weights that may make the point of a nearest to corner j of b: a corner, on an edge, inside. *)
+(** Weights that may make the point of a that is nearest to corner j of b: a corner of a, a point of
+    an edge, or a point of the inside. *)
 Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
   let p := corner b j in
   let on_side i := let e := edge a i in along i (dot (sub p (corner a i)) e) (dot e e) in
@@ -215,7 +220,7 @@ Definition covered (shared : list (vec Z)) (t : triangle Z) (l : list index) : b
   existsb (fun c => existsb (fun d => forallb (fun i => lies_on c d (corner t i)) l) shared) shared.
 
 (** All common points lie in the hull of the corners la of a, and in that of the corners lb of b. If a
-    plane has the ones on one side and the others on the other side, they lie in the hulls of those
+    plane has la on one side and lb on the other, all common points lie in the hulls of the corners
     in the plane. *)
 Definition cut (a b : triangle Z) (la lb : list index) (d : vec Z)
   : option (list index * list index) :=
@@ -233,7 +238,7 @@ Definition cut (a b : triangle Z) (la lb : list index) (d : vec Z)
 Definition opposed (l : list (vec Z)) : list (vec Z) := l ++ map (scale (-1)) l.
 Definition pairs_of {A B C} (f : A -> B -> C) (l : list A) (m : list B) : list C :=
   flat_map (fun p => map (f p) m) l.
-(** Directions to try, in groups: a later one is computed only if all before it are of no use. *)
+(** Directions to try, in groups. A group is computed only if all groups before it are of no use. *)
 Definition cuts (a b : triangle Z) : list (unit -> list (vec Z)) :=
   let ea := map (edge a) indices in let eb := map (edge b) indices in
   let ws := ea ++ eb ++ pairs_of (between a b) indices indices in
@@ -266,8 +271,8 @@ Fixpoint find_cut (a b : triangle Z) (la lb : list index) (groups : list (unit -
       | None => find_cut a b la lb rest
       end
   end.
-(** Two flat triangles on lines: the common points lie on the line through c along e, and n bounds
-    them to what is between c and d. *)
+(** For two triangles that are flat: the common points lie on the line through c along e, and n
+    bounds them to the part between c and d. *)
 Definition on_line (c e : vec Z) (t : triangle Z) (l : list index) : bool :=
   forallb (fun i => forallb (fun k => dot (away k e) (corner t i) =? dot (away k e) c)
                             [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1]) l.
@@ -300,7 +305,7 @@ Fixpoint only_shared (steps : nat) (a b : triangle Z) (shared : list (vec Z)) (l
 
 (** * The decision of one pair *)
 Inductive kind := Separated | Only_shared | Meeting.
-(** None: neither side could be proved. [first]: a common point is tried first. *)
+(** None: it could not be proved whether the pair meets. [first]: a common point is tried first. *)
 Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : triangle Z)
   : option kind :=
   let apart := match shared with
@@ -357,7 +362,7 @@ Definition greatest (t : triangle Z) : vec Z :=
 Definition make_item (e : Z) (n : named) : item :=
   let s := map_triangle (scaled e) (corners n) in let l := least s in let h := greatest s in
   Item (of_object n) (number n) (inner n) s l h (add l h).
-(** In the same order; twice in reverse, since that needs no stack. *)
+(** The items in the order of the list. It is reversed twice, since that needs no stack. *)
 Definition items_of (e : Z) (l : list named) : list item :=
   fold_left (fun done n => make_item e n :: done) (rev_append l []) [].
 
@@ -401,8 +406,8 @@ Fixpoint divide (f : item -> bool) (l yes no : list item) : list item * list ite
   | [] => (yes, no)
   | a :: rest => if f a then divide f rest (a :: yes) no else divide f rest yes (a :: no)
   end.
-(** Whether a box lies in the lower half of those of a list, along the axis on which their middles
-    reach farthest. *)
+(** Whether a box lies in the lower half of the boxes of a list, along the axis on which their
+    middles reach farthest. *)
 Definition halve (first : item) (l : list item) : item -> bool :=
   let bottom := fold_left (fun p b => down p (middle b)) l (middle first) in
   let top := fold_left (fun p b => up p (middle b)) l (middle first) in
@@ -542,9 +547,9 @@ Fixpoint judge_all (clearance : Z) (c : claims) (l : list (item * item))
       | Some (k, f) => judge_all clearance c l' es' (enter t e (name_of a b) k f)
       end
   end.
-(** [l]: the triangles that the tile needs. [reach]: boxes that are at most so far apart along each
-    axis are decided; with [less] those that are less far apart. Any reach that is at least the
-    clearance is right. *)
+(** [l]: the triangles that the tile needs. [reach]: a pair is decided if its boxes are at most that
+    far apart along each axis; with [less], if they are less far apart. Any reach that is at least
+    the clearance is right. *)
 Definition check (l : list named) (b : tile) (clearance reach : double) (less : bool) (c : claims)
   (es : list evidence) : verdict :=
   let e := lower_place (lower_place (lower (lower 0 clearance) reach) (tile_begin b)) (tile_end b) in
@@ -554,8 +559,10 @@ Definition check (l : list named) (b : tile) (clearance reach : double) (less : 
   then judge_all d c (pairs (is_of f b) (fun _ => r) (items_of f l)) es (Tally [] None None 0 0 0 0 0)
   else Bad_reach.
 
-(** * The lists of tiles make a whole: each tile begins where the one before it ends, and none runs
-      backwards. Tiles that do could cover a place twice. *)
+(** * Tiles that make a whole
+
+    Each tile begins where the tile before it ends, and none ends before it begins: such tiles could
+    cover a place twice. *)
 Definition same_axis (k k' : axis) : bool :=
   match k, k' with
   | Along_x, Along_x | Along_y, Along_y | Along_z, Along_z => true
@@ -583,6 +590,6 @@ Fixpoint join (k : axis) (place : option double) (l : list (tile * list row)) (d
         end
       else None
   end.
-(** The rows of all tiles, in no order; None if they leave something out, or cover it twice. *)
+(** The rows of all tiles, in no order. None if the tiles leave a place out, or cover one twice. *)
 Definition merge_tiles (l : list (tile * list row)) : option (list row) :=
   match l with [] => None | (b, _) :: _ => join (tile_axis b) None l [] end.

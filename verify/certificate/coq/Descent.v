@@ -21,7 +21,7 @@ Proof.
   - intros d. rewrite (qdot_same _ _ _ P), qdot_mix. reflexivity.
 Qed.
 
-(** If all values that have weight are at most m, and the mean is m, then those with weight are m. *)
+(** If all values with a weight above 0 are at most m, and their mean is m, then they are all m. *)
 Lemma mean_tight w f m i :
   (forall i, 0 <= w i) -> weighted w (fun _ => 1) == 1 -> (forall i, w i == 0 \/ f i <= m) ->
   m <= weighted w f -> w i == 0 \/ f i == m.
@@ -108,7 +108,7 @@ Proof.
   intros E. injection E as <- <-. eapply first_cut_sound, C.
 Qed.
 
-(** Corners that lie on one segment: so does every mean of them. *)
+(** If corners lie on one segment, every mean of them does. *)
 Lemma qdot_unit p : qdot unit_x p == x p /\ qdot unit_y p == y p /\ qdot unit_z p == z p.
 Proof.
   unfold qdot, unit_x, unit_y, unit_z. cbn [x y z]. change #1 with 1. change #0 with 0.

@@ -4,7 +4,7 @@ Require Import Spec Checker Geometry.
 Import ListNotations.
 Open Scope Q_scope.
 
-(** * A common point that is found is one *)
+(** * A point that the checker finds is a common point *)
 Lemma are_weights_total w : are_weights w = true -> (0 < total w)%Z.
 Proof. unfold are_weights. intros H. now tests. Qed.
 Lemma is_common_sound a b u v :

@@ -457,7 +457,7 @@ Lemma triangles_of_answer s clearance o i o' i' : answer s clearance o i o' i' -
 Proof. intros (_ & t & t' & T & T' & _). eauto. Qed.
 
 (** * The theorems *)
-(** Of the pairs that belong to a tile: the triangles that the reader keeps suffice. *)
+(** A list of the pairs that belong to a tile. The triangles that the reader keeps suffice. *)
 Theorem accepted_tile_is_right_and_complete s piece clearance reach less c es l :
   check (gathered piece reach s) piece clearance reach less c es = Proved l ->
   right_and_complete_in piece s clearance l.
@@ -475,7 +475,7 @@ Proof.
     apply L. right. exists a, b. auto.
 Qed.
 
-(** The lists of tiles that leave nothing out together are the list of the whole scene. *)
+(** If the tiles leave nothing out, their lists together are the list of the whole scene. *)
 Theorem merged_list_is_right_and_complete s clearance tiles l :
   merge_tiles tiles = Some l ->
   (forall piece rows, In (piece, rows) tiles -> right_and_complete_in piece s clearance rows) ->

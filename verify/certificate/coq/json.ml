@@ -31,7 +31,7 @@ let parse most_values text =
     let shown = String.sub text from (!at - from) in
     if Float.is_integer (float_of_string shown) || Float.abs (float_of_string shown) < infinity
     then Number shown else stop "a number that is too large" in
-  (* One character of UTF-8, as the Unicode standard's table 3-7 has it. *)
+  (* One character of UTF-8, as in table 3-7 of the Unicode standard. *)
   let utf8 out first =
     let more low high =
       let c = Char.code (next ()) in

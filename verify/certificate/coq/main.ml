@@ -1,11 +1,11 @@
-(* farcull-check-verified CERTIFICATE SCENE: reads both files, calls the checker that Checker.v
-   defines and Proofs.v proves, and prints its verdict; so for more pairs of files. This file is
-   trusted: it turns bytes into the values of Spec.v, and a verdict into a line. SCENE holds the
-   words that `farcull check --verified` writes: 64 bits each, lowest byte first.
-   docs/certificate.md describes the certificate. With --tiles CERTIFICATE... SCENE the certificates
-   are those of all tiles of the scene, in their order. Exit status as of `farcull check`: 0 proved;
-   1 refuted or not proved; 2 a file that cannot be read; 3 the checker could not decide a pair; 4 the
-   stack or the memory was too small. *)
+(* farcull-check-verified CERTIFICATE SCENE ...: reads both files, calls the checker that Checker.v
+   defines and Proofs.v proves, and prints its verdict; then the same for further pairs of files.
+   With --tiles CERTIFICATE... SCENE the certificates are those of all tiles of the scene, in order.
+   docs/certificate.md describes the certificate. SCENE holds the words that `farcull check
+   --verified` writes: 64 bits each, lowest byte first. Exit status: 0 proved; 1 refuted or not
+   proved; 2 a file cannot be read; 3 the checker could not decide a pair; 4 the stack or the memory
+   was too small. This file is trusted: it turns bytes into the values of Spec.v, and a verdict into
+   a line. *)
 module Integer = Z
 open Checker
 module Z = Integer  (* zarith's; the checker has a Z of its own *)
@@ -98,10 +98,11 @@ let double_of word =
     { mantissa = Z.of_int (if Int64.compare word 0L < 0 then - odd else odd);
       exponent = Z.of_int (max exponent 1 - 1075 + zeros) }
 
-(* Up to which difference boxes count as near. farcull rounds the difference of two doubles, and
-   compares it with the clearance. The rounded one is at most the clearance if the exact one is at
-   most half way to the next double; if the last bit of the clearance is 1, half way rounds up. Any
-   reach that is not below the clearance is right; this one gives the pairs that the bytes are for. *)
+(* The largest distance at which boxes count as near. farcull rounds the difference of two doubles,
+   and compares it with the clearance. The rounded difference is at most the clearance if the exact
+   difference is at most half way to the next double (below it, if the last bit of the clearance is
+   1, since half way is then rounded up). Any reach that is not below the clearance is right; this
+   one gives the pairs that the certificate has bytes for. *)
 let reach_of clearance =
   if clearance = 0. then (zero, false)
   else
@@ -111,14 +112,14 @@ let reach_of clearance =
     ({ mantissa = Z.succ (Z.mul (Z.of_int 2) whole); exponent = Z.of_int (exponent - 1) },
      Z.is_odd whole)
 
-(* What is kept of a scene while it is read, and what is found of the whole. *)
+(* What is kept of a scene while it is read, and what is known of the whole scene. *)
 type found = {
   kept : named list; objects : int; triangles : int; has_self : bool;
   unasked_objects : Z.t; unasked_pairs : Z.t;  (* inside objects that are not self *)
   fnv : string; sha : string }
 
-(* Reads the scene from its beginning to its end. Of the triangles it holds those that [keep] keeps,
-   which it calls for each of them in order: this is [gathered] of Checker.v. *)
+(* Reads the scene from its beginning to its end. Calls [keep] for each triangle in order, and holds
+   the triangles that it keeps: this is [gathered] of Checker.v. *)
 let read_scene path piece reach =
   let file = open_in_bin path in
   Fun.protect ~finally:(fun () -> close_in file) @@ fun () ->
@@ -252,8 +253,8 @@ let other_scene root found =
   || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
   || Json.text (Json.member "hash" key) <> found.fnv
 
-(* Of one certificate: the tile, the rows, the clearance and whether the scene has objects that are
-   self, if it is proved; else what it is. *)
+(* Checks one certificate. If it is proved, gives its tile, rows and clearance, and whether the scene
+   has objects that are self; else the verdict. *)
 let check_file scene certificate =
   let text = read_file certificate in
   let root = Json.certificate text in
