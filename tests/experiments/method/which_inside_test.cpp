@@ -8,10 +8,12 @@ namespace {
 
 using lab::Parts;
 
-/// A cube whose sides are twice `half` long; without its lid where `open`.
+/// A cube whose sides are twice `half` long; without its lid where `open`. Two of its sides face
+/// inward, so that parity decides.
 void add_box(Parts& parts, const Vec3& middle, double half, bool open = false) {
   const Vec3 h = Vec3::Constant(half);
   parts.box(middle - h, middle + h, false, open);
+  for (auto& t : std::span(parts.scene.triangles).last(4)) std::swap(t[0], t[1]);
 }
 
 TEST(WhichInside, IsWhereAllPartsAre) {
