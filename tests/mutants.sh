@@ -19,8 +19,9 @@
 #
 # The list is tests/mutants/*.txt. A block is
 #   === NAME
-#   file: the file that changes
-#   tests: a filter of googletest; each pattern of it begins with the name of a suite
+#   file: the file that changes; a block without this line has that of the block before
+#   tests: a filter of googletest; each pattern of it begins with the name of a suite; without this
+#     line it is that of the block before
 #   change: what changes, in a sentence
 #   program: the program of the tests, where it is not farcull_mutant_tests
 #   explained: why no test can notice it, if none can

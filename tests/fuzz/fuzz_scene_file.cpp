@@ -1,6 +1,5 @@
 // Scene files. FARCULL_FUZZ_MESHES is the folder that they stand in.
 #include <set>
-#include <string>
 
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"

@@ -49,34 +49,22 @@ std::string mutated(std::string bytes, const std::vector<File>& files, std::uint
     const std::size_t at = below(bytes.size() + 1);
     const std::size_t length = std::min(below(below(4) == 0 ? 64 : 5), bytes.size() - at);
     const std::string& token = kTokens[below(kTokens.size())];
-    switch (below(7)) {
-      case 0:
-        if (at < bytes.size()) bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 1:
-        if (at < bytes.size()) bytes[at] = static_cast<char>(random());
-        break;
-      case 2:
-        bytes.erase(at, length);
-        break;
-      case 3:
-        bytes.insert(below(bytes.size() + 1), std::string(bytes, at, length));
-        break;
-      case 4:
-        bytes.insert(at, token);
-        break;
-      case 5: {  // the number at or after the place
-        const auto first =
-            std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), digit);
-        const auto last = std::find_if_not(first, bytes.end(), digit);
-        bytes.replace(first, last, token);
-        break;
-      }
-      default: {
-        const std::string& other = files[below(files.size())].bytes;
-        const std::size_t from = below(other.size() + 1);
-        bytes.insert(at, other, from, below(64));
-      }
+    const std::size_t kind = below(7);
+    if (kind == 0 && at < bytes.size()) bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
+    if (kind == 1 && at < bytes.size()) bytes[at] = static_cast<char>(random());
+    if (kind == 2) bytes.erase(at, length);
+    if (kind == 3) bytes.insert(below(bytes.size() + 1), std::string(bytes, at, length));
+    if (kind == 4) bytes.insert(at, token);
+    if (kind == 5) {  // the number at or after the place
+      const auto first =
+          std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), digit);
+      const auto last = std::find_if_not(first, bytes.end(), digit);
+      bytes.replace(first, last, token);
+    }
+    if (kind == 6) {
+      const std::string& other = files[below(files.size())].bytes;
+      const std::size_t from = below(other.size() + 1);
+      bytes.insert(at, other, from, below(64));
     }
   }
   bytes.resize(std::min(bytes.size(), kMaxBytes));

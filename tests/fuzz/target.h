@@ -6,11 +6,9 @@
 // contract (FuzzFinding), more memory than the input pays for, or what a sanitizer reports.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <new>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "core/base/error.h"

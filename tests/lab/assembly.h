@@ -1,8 +1,6 @@
 // An assembly of which every answer is known.
 #pragma once
 
-#include <map>
-
 #include "experiments/method/clash.h"
 #include "tests/lab/parts.h"
 

@@ -46,31 +46,14 @@ inline void move(Boxes& boxes, rational::Random& random, int kind) {
     if (was_huge || box.is_empty()) box = cube(0, random.below(2));
     box = {box.lo + by, box.hi + by};
     const int axis = random.below(3);
-    switch (random.below(40)) {
-      case 0:
-        box.hi[axis] = box.lo[axis];
-        break;
-      case 1:
-        box.lo = box.hi;
-        break;
-      case 2:
-        std::swap(box.lo, box.hi);
-        break;  // empty, or a point
-      case 3:
-        box = cube(-0.0, 0.0);
-        break;
-      case 4:
-        box = cube(-DBL_MAX, DBL_MAX);
-        break;
-      case 5:
-        box.hi[axis] = DBL_MAX;
-        break;
-      case 6:
-        box = boxes[random.below(static_cast<int>(boxes.size()))];
-        break;
-      default:
-        break;
-    }
+    const int change = random.below(40);
+    if (change == 0) box.hi[axis] = box.lo[axis];
+    if (change == 1) box.lo = box.hi;
+    if (change == 2) std::swap(box.lo, box.hi);  // empty, or a point
+    if (change == 3) box = cube(-0.0, 0.0);
+    if (change == 4) box = cube(-DBL_MAX, DBL_MAX);
+    if (change == 5) box.hi[axis] = DBL_MAX;
+    if (change == 6) box = boxes[random.below(static_cast<int>(boxes.size()))];
   }
 }
 

@@ -5,7 +5,6 @@
 #include "core/canvas/canvas.h"
 #include "core/canvas/fatten.h"
 #include "core/view/budget.h"
-#include "core/view/view.h"
 #include "tests/lab/test.h"
 
 namespace farcull::lab {
@@ -43,7 +42,6 @@ inline Drawables fattened(const Window& w, const Fattener& fattener, double radi
   return out;
 }
 
-/// Draws of all elements of an item for a slot.
 inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint32_t item,
                 std::uint32_t slot) {
   for (std::uint32_t e = drawables.first[item]; e < drawables.first[item + 1]; ++e)
@@ -91,7 +89,6 @@ class Random {
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
   double sign() { return engine_() & 1 ? 1 : -1; }
-  /// A multiple of `step` in [lo, hi].
   double grid(double lo, double hi, double step) {
     return std::floor(between(lo, hi) / step) * step;
   }

@@ -5,7 +5,6 @@
 // their corners, and the answer the first pair of features that has the distance of the triangles.
 #pragma once
 
-#include <gmpxx.h>
 #include "tests/lab/reference.h"
 #include "verify/closest.h"
 
@@ -38,18 +37,12 @@ struct Least {
 };
 
 inline Integer determinant(const std::vector<std::vector<Integer>>& m) {
-  switch (m.size()) {
-    case 0:
-      return 1;
-    case 1:
-      return m[0][0];
-    case 2:
-      return m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    default:
-      return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  }
+  if (m.empty()) return 1;
+  if (m.size() == 1) return m[0][0];
+  if (m.size() == 2) return m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
 /// Of the flats through some corners of each; nothing where they have no single pair of closest

@@ -6,7 +6,6 @@
 #include <rapidcheck.h>
 
 #include "core/cull/cull.h"
-#include "core/cull/pass.h"
 #include "offsets/offsets.h"
 #include "tests/lab/scenes.h"
 #include "verify/exact.h"

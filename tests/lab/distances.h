@@ -5,7 +5,6 @@
 #include "experiments/method/distances.h"
 #include "tests/lab/closest.h"
 #include "tests/lab/grid_distance.h"
-#include "verify/rational.h"
 
 namespace farcull::distance_lab {
 

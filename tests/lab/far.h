@@ -6,13 +6,10 @@
 #include <rapidcheck.h>
 #include "core/boxes/join.h"
 #include "core/cull/cull.h"
-#include "core/view/regions.h"
-#include "core/view/view.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/offsets.h"
 #include "tests/lab/scenes.h"
 #include "verify/accounting.h"
-#include "verify/exact.h"
 
 namespace farcull::lab {
 
@@ -261,7 +258,6 @@ inline const std::vector<int>& property_resolutions() {
   return all;
 }
 
-/// A random scene of a family, and how it is looked at.
 struct Given {
   std::vector<Spec> specs, contacts;
   std::string views;
@@ -311,7 +307,6 @@ inline Scene scene_of(const Given& given, const Family& family) {
 // shrinks to few triangles and is written to a file; in tests/cases the suite replays it ever
 // after.
 
-/// Culling by FAR with a canvas of the caller's.
 inline CullResult far_culled(Canvas& canvas, const Scene& scene, const Fattener& fattener,
                              const std::string& views, int resolution, double factor = 1) {
   const CullSettings settings{.views = parse_views(views),

@@ -1,14 +1,12 @@
 // Scenes as the library takes them.
 #pragma once
 
-#include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
 
-/// A scene as flat arrays.
 struct Flat {
   std::vector<double> vertices;
   std::vector<std::uint32_t> triangles, starts;

@@ -5,7 +5,6 @@
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/canvas/canvas.h"
 #include "tests/lab/canvas.h"
-#include "tests/lab/test.h"
 
 namespace farcull::lab {
 

@@ -2,7 +2,6 @@
 // code with farcull; and random scenes.
 #pragma once
 
-#include "core/scene/scene.h"
 #include "tests/lab/reference.h"
 #include "verify/rational.h"
 
@@ -54,7 +53,6 @@ inline mpz_class scale_of(std::span<const Vec3> points) {
   return scale;
 }
 
-/// The corners times the scale.
 inline Corners<mpz_class> exact(const std::array<Vec3, 3>& t, const mpz_class& scale) {
   return reference::converted(t,
                               [&](double x) { return mpz_class(mpq_class(x * mpq_class(scale))); });
@@ -142,7 +140,6 @@ inline bool at_most(const Fraction<Integer>& squared, double unit, double most) 
   return q(squared.numerator) * u * u <= m * m * q(squared.denominator);
 }
 
-/// Adds an object.
 inline void add_object(GridScene& grid, const std::vector<Corners<Integer>>& triangles) {
   Object object;
   object.first_triangle = static_cast<std::uint32_t>(grid.corners.size());
@@ -196,22 +193,10 @@ inline std::vector<Corners<Integer>> random_triangles(rational::Draws& random, i
 
 /// Scales of the whole range of doubles, and places far from the origin.
 inline std::pair<double, double> random_unit_and_offset(rational::Draws& random) {
-  switch (random.below(8)) {
-    case 0:
-      return {0x1p-1074, 0};
-    case 1:
-      return {0x1p-1060, 0x1p20};
-    case 2:
-      return {0x1p1016, 0};
-    case 3:
-      return {0x1p970, 0x1p50};
-    case 4:
-      return {1, 0x1p46};
-    case 5:
-      return {0x1p-30, 0x1p30};
-    default:
-      return {1, 0};
-  }
+  constexpr std::pair<double, double> kAll[8] = {
+      {0x1p-1074, 0}, {0x1p-1060, 0x1p20}, {0x1p1016, 0}, {0x1p970, 0x1p50},
+      {1, 0x1p46},    {0x1p-30, 0x1p30},   {1, 0},        {1, 0}};
+  return kAll[random.below(8)];
 }
 
 }  // namespace farcull::near_lab

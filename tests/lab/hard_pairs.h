@@ -73,8 +73,8 @@ inline DrawnPair extreme(RandomDraws& random) {
   return pair;
 }
 
-/// In one plane with v; a corner of each on the line, to within rounding, that divides the angle
-/// between the others.
+/// Two triangles in one plane that share the corner v. A corner of each lies, but for rounding, on
+/// the line that divides the angle between the others.
 inline DrawnPair along_the_divide(RandomDraws& random) {
   constexpr double kGrid = 0x1p48;  // so that small multiples are exact
   const double x = std::round(random.between(-1, 1) * kGrid) / kGrid;
@@ -153,5 +153,37 @@ struct NoPoint : FilterBounds {
 struct NoGap : FilterBounds {
   static constexpr double gap = 0;
 };
+
+/// Two triangles at a distance that is a double, closest in one feature of each alone.
+struct KnownDistance {
+  const char* name;
+  Triangle a, b;
+  double distance;
+};
+
+inline std::vector<KnownDistance> known_distances() {
+  const auto triangle = [](const std::array<int, 9>& x) {
+    return Triangle{Vec3(x[0], x[1], x[2]), Vec3(x[3], x[4], x[5]), Vec3(x[6], x[7], x[8])};
+  };
+  struct Row {
+    const char* name;
+    std::array<int, 9> a, b;  // the coordinates of the corners
+    double distance;
+  };
+  std::vector<KnownDistance> out;
+  for (const auto& [name, a, b, distance] :
+       {Row{"corners", {0, 0, 0, -4, -1, 0, -4, 1, 0}, {3, 4, 0, 9, 5, 1, 9, 7, -1}, 5},
+        Row{"corner, edge", {0, 0, 0, -4, -1, 0, -4, 1, 1}, {3, -2, 0, 3, 5, 0, 9, 0, 0}, 3},
+        Row{"corner, face", {1, 1, 7, 0, 1, 9, 1, 2, 9}, {-3, -3, 0, 9, -3, 0, -3, 9, 0}, 7},
+        Row{"edges", {-3, 0, 0, 5, 0, 0, 0, 0, -4}, {0, -3, 2, 0, 4, 2, 0, 0, 6}, 2},
+        Row{"parallel edges", {-3, 0, 0, 5, 0, 0, 0, 0, -4}, {1, 0, 2, 9, 0, 2, 2, 0, 6}, 2},
+        Row{"parallel faces", {0, 0, 0, 5, 0, 0, 0, 5, 0}, {1, 1, 2, 6, 1, 2, 1, 6, 2}, 2},
+        Row{"points", {1, 2, 2, 1, 2, 2, 1, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 0, 0}, 3},
+        Row{"segments", {-3, 0, 0, 5, 0, 0, 1, 0, 0}, {0, -3, 2, 0, 4, 2, 0, 1, 2}, 2}}) {
+    out.push_back({name, triangle(a), triangle(b), distance});
+    out.push_back({name, triangle(b), triangle(a), distance});
+  }
+  return out;
+}
 
 }  // namespace farcull::hard_pairs

@@ -5,7 +5,6 @@
 #include "experiments/lemma/lemma.h"
 #include "offsets/offsets.h"
 #include "tests/lab/canvas.h"
-#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull::lab {

@@ -39,36 +39,24 @@ inline RigidMotion random_motion(RandomNumbers& random, int kind) {
     for (double& x : out.r) x *= by;
     for (double& t : out.t) t *= by;
   };
-  switch (kind) {
-    case 2: {  // a permutation of the axes with signs, and steps of a grid
-      out.r = {};
-      const auto first = random.below(3u), second = (first + 1 + random.below(2u)) % 3;
-      out.r[first] = random.sign();
-      out.r[3 + second] = random.sign();
-      out.r[6 + (3 - first - second)] = random.sign();
-      for (double& t : out.t) t = 0.125 * random.between(-2, 2) > 0 ? 0.25 : 0;
-      break;
-    }
-    case kFarMotion: {
-      const double far = random.below(2) > 0 ? 1e6 : 1e12;
-      for (double& t : out.t) t += far;
-      break;
-    }
-    case kTinyMotion:
-      scale(0x1p-1060);
-      break;
-    case 5:
-      for (std::size_t k = 0; k < 3; ++k) out.r[k] = -out.r[k];
-      break;
-    case 6:
-      for (double& x : out.r) x += random.between(-1, 1);
-      break;
-    case 7:
-      scale(0x1p1000);
-      break;
-    default:
-      break;
+  if (kind == 2) {  // a permutation of the axes with signs, and steps of a grid
+    out.r = {};
+    const auto first = random.below(3u), second = (first + 1 + random.below(2u)) % 3;
+    out.r[first] = random.sign();
+    out.r[3 + second] = random.sign();
+    out.r[6 + (3 - first - second)] = random.sign();
+    for (double& t : out.t) t = 0.125 * random.between(-2, 2) > 0 ? 0.25 : 0;
   }
+  if (kind == kFarMotion) {
+    const double far = random.below(2) > 0 ? 1e6 : 1e12;
+    for (double& t : out.t) t += far;
+  }
+  if (kind == kTinyMotion) scale(0x1p-1060);
+  if (kind == 5)
+    for (std::size_t k = 0; k < 3; ++k) out.r[k] = -out.r[k];
+  if (kind == 6)
+    for (double& x : out.r) x += random.between(-1, 1);
+  if (kind == 7) scale(0x1p1000);
   return out;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/scene_build.h"
 #include "tests/lab/test.h"
 
 namespace farcull::lab {
@@ -27,7 +26,6 @@ inline std::vector<std::string> moving_scenes(bool of_packaged_meshes) {
   return names;
 }
 
-/// The first of kFrames frames in which something collides.
 inline long first_frame(const std::string& name) { return name.starts_with("cloth") ? 30 : 0; }
 
 }  // namespace farcull::lab

@@ -2,12 +2,10 @@
 #pragma once
 
 #include "core/base/random.h"
-#include "core/scene/scene.h"
 #include "tests/lab/test.h"
 
 namespace farcull::lab {
 
-/// Adds parts to a scene, each an object.
 class Parts {
  public:
   Scene scene;

@@ -3,7 +3,6 @@
 
 #include "core/scene/scene.h"
 #include "tests/lab/canvas.h"
-#include "tests/lab/test.h"
 
 namespace farcull::lab {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "verify/kernel_cases.h"
-#include "verify/solid_lines.h"
 
 namespace farcull::box_line {
 

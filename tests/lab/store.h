@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 #include "experiments/studies/point.h"
 #include "experiments/studies/run_studies.h"
-#include "experiments/studies/store.h"
-#include "experiments/studies/study.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

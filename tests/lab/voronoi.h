@@ -2,7 +2,6 @@
 // misses.
 #pragma once
 
-#include "core/scene/scene.h"
 #include "core/voronoi/voronoi.h"
 #include "tests/lab/grid_distance.h"
 #include "tests/lab/rational.h"
@@ -26,7 +25,6 @@ Number between(const Corners<Number>& a, const Corners<Number>& b) {
   return Number(squared.numerator / squared.denominator);
 }
 
-/// The nearest neighbours of an object.
 struct Nearest {
   rational::Q squared = -1;         // of the distance; negative: there is no other object
   std::vector<TrianglePair> pairs;  // all at that distance, sorted
@@ -160,23 +158,15 @@ inline GridTriangle drawn_triangle(rational::Random& random, float longest) {
   const float thin = std::exp2(static_cast<float>(-random.below(40)));
   for (auto& corner : out.corners) corner = {number(), number(), number()};
   auto& [a, b, c] = out.corners;
-  switch (random.below(6)) {
-    case 0:  // a needle
-      for (std::size_t k = 0; k < 3; ++k) c[k] = std::min(longest, b[k] + thin);
-      break;
-    case 1:  // three points close to a line
-      for (std::size_t k = 0; k < 3; ++k) c[k] = 0.5f * (a[k] + b[k]);
-      c[0] = std::min(longest, c[0] + thin);
-      break;
-    case 2:
-      c = b;
-      break;
-    case 3:
-      c = b = a;
-      break;
-    default:
-      break;
+  const int kind = random.below(6);
+  if (kind == 0)  // a needle
+    for (std::size_t k = 0; k < 3; ++k) c[k] = std::min(longest, b[k] + thin);
+  if (kind == 1) {  // three points close to a line
+    for (std::size_t k = 0; k < 3; ++k) c[k] = 0.5f * (a[k] + b[k]);
+    c[0] = std::min(longest, c[0] + thin);
   }
+  if (kind == 2) c = b;
+  if (kind == 3) c = b = a;
   return out;
 }
 

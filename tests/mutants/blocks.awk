@@ -34,6 +34,13 @@ function finish(   k) {
   split("", part)
 }
 
+# A line of the block before that this one leaves out.
+function inherit(key) {
+  if (key in part || field[n - 1, key] == "" || at[n - 1] != FILENAME) return
+  part[key] = field[n - 1, key]
+  raw[n] = raw[n] key ": " part[key] "\n"
+}
+
 # A block ends with its list.
 FNR == 1 { open = 0 }
 /^=== / {
@@ -44,6 +51,8 @@ FNR == 1 { open = 0 }
   raw[n] = $0 "\n"
   next
 }
+open && !/^file: / { inherit("file") }
+open && /^change: / { inherit("tests") }
 open { raw[n] = raw[n] $0 "\n" }
 /^[-+]/ && open {
   key = /^-/ ? "old" : "new"

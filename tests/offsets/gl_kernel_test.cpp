@@ -27,25 +27,13 @@ Cell random_cell(Random& random, int index, bool box) {
                   Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0) * (0.7 + size);
   std::array<Vec3, 3> t;
   for (Vec3& p : t) p = at + random.cube(1).cwiseProduct(Vec3(size, size, depth));
-  switch (random.below(8)) {
-    case 0:  // needle
-      t[2] = t[0] + random.uniform(0, 1) * (t[1] - t[0]) + random.scaled3(-40, -10);
-      break;
-    case 1:  // segment
-      t[2] = t[1];
-      break;
-    case 2:  // point
-      t[1] = t[2] = t[0];
-      break;
-    case 3:  // vertical edge
-      t[1] = Vec3(t[0][0], t[0][1], t[1][2]);
-      break;
-    case 4:  // flat
-      t[1][2] = t[2][2] = t[0][2];
-      break;
-    default:
-      break;
-  }
+  const int kind = random.below(8);
+  if (kind == 0)  // needle
+    t[2] = t[0] + random.uniform(0, 1) * (t[1] - t[0]) + random.scaled3(-40, -10);
+  if (kind == 1) t[2] = t[1];                             // segment
+  if (kind == 2) t[1] = t[2] = t[0];                      // point
+  if (kind == 3) t[1] = Vec3(t[0][0], t[0][1], t[1][2]);  // vertical edge
+  if (kind == 4) t[1][2] = t[2][2] = t[0][2];             // flat
   const double radius = random.below(8) == 0 ? 0 : 0.72;
   return {cx, cy, box ? obb_of(t, radius) : minkowski_solid(t[0], t[1], t[2], radius)};
 }

@@ -9,8 +9,6 @@
 #include "tests/lab/rational.h"
 #include "tests/lab/solids.h"
 #include "tests/lab/test.h"
-#include "verify/kernel_cases.h"
-#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace glsl::exact_without_widening {

@@ -8,7 +8,6 @@
 #include "tests/lab/rational.h"
 #include "tests/lab/solids.h"
 #include "tests/lab/test.h"
-#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace glsl::obb_without_widening {
@@ -60,35 +59,26 @@ Points random_points(Random& random) {
   const Vec3 at(random.uniform(-600, 600), random.uniform(-600, 600),
                 random.uniform(-1, 1) * reach);
   const auto near = [&](double lo, double hi) { return Vec3(at + random.scaled3(lo, hi)); };
-  switch (random.below(9)) {
-    case 0:
-      return {near(-4, 9), near(-4, 9), near(-4, 9)};
-    case 1: {  // needle, aspect 1e3 .. 1e12
-      const Vec3 e = random.scaled3(0, 9);
-      return {at - e, at + e, at + e * random.uniform(-1, 1) + random.scaled3(-40, -3)};
-    }
-    case 2:
-      return {at, at, near(-10, 9)};  // a segment
-    case 3:
-      return {at, at, at};  // a point
-    case 4:
-      return {at};  // one point
-    case 5:
-      return {near(-60, -20), near(-60, -20), near(-60, -20)};
-    case 6:
-      return {random.scaled3(-160, -100), random.scaled3(-160, -100), Vec3::Zero()};
-    case 7: {  // flat along an axis: normals with exact zeros
-      Points points{near(0, 9), near(0, 9), near(0, 9), near(0, 9)};
-      const int axis = random.below(3);
-      for (Vec3& p : points) p[axis] = at[axis];
-      return points;
-    }
-    default: {
-      Points points;
-      for (int i = 0; i < 3 + random.below(7); ++i) points.push_back(near(-2, 8));
-      return points;
-    }
+  const int kind = random.below(9);
+  if (kind == 0) return {near(-4, 9), near(-4, 9), near(-4, 9)};
+  if (kind == 1) {  // needle, aspect 1e3 .. 1e12
+    const Vec3 e = random.scaled3(0, 9);
+    return {at - e, at + e, at + e * random.uniform(-1, 1) + random.scaled3(-40, -3)};
   }
+  if (kind == 2) return {at, at, near(-10, 9)};  // a segment
+  if (kind == 3) return {at, at, at};            // a point
+  if (kind == 4) return {at};                    // one point
+  if (kind == 5) return {near(-60, -20), near(-60, -20), near(-60, -20)};
+  if (kind == 6) return {random.scaled3(-160, -100), random.scaled3(-160, -100), Vec3::Zero()};
+  Points points;
+  if (kind == 7) {  // flat along an axis: normals with exact zeros
+    points = {near(0, 9), near(0, 9), near(0, 9), near(0, 9)};
+    const int axis = random.below(3);
+    for (Vec3& p : points) p[axis] = at[axis];
+  } else {
+    for (int i = 0; i < 3 + random.below(7); ++i) points.push_back(near(-2, 8));
+  }
+  return points;
 }
 
 TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {

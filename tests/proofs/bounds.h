@@ -29,7 +29,6 @@ std::vector<Bound> map_bounds();       // core/view: the map to pixels, clipping
 std::vector<Bound> fit_bounds();       // offsets/fit.inl
 std::vector<Bound> slab_bounds();      // offsets/slab.glsl
 std::vector<Bound> extent_bounds();    // offsets/minkowski.glsl
-/// All of them.
 std::vector<Bound> bounds();
 
 /// A part of the argument that Gappa cannot express.

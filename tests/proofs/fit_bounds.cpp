@@ -1,5 +1,4 @@
 // Solids fitted in doubles and rounded outward to floats (offsets/fit.inl).
-#include <vector>
 
 #include "offsets/rounding.h"
 #include "tests/proofs/bounds.h"

@@ -10,7 +10,6 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <string>
 
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/gappa.h"

@@ -1,11 +1,9 @@
 // The way of a point from the world to the window: the map, clipping, and the budget's terms. M is
 // half the viewport's side (px).
 #include <cmath>
-#include <vector>
 
 #include "core/canvas/canvas.h"
 #include "core/view/budget.h"
-#include "core/view/view.h"
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
 #include "tests/proofs/raw.h"

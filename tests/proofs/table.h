@@ -1,9 +1,6 @@
 // The tables of docs/proofs.md: how much room each bound has, and what is proved by hand.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "tests/proofs/bounds.h"
 
 namespace farcull::proofs {

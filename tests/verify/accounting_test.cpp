@@ -1,13 +1,11 @@
 // Accounting puts every pair into the right class, and notices faults of its own steps.
 #include "verify/accounting.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/box_pairs.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -15,7 +13,6 @@ namespace {
 using reference::Triangle;
 using Pairs = std::vector<TrianglePair>;
 
-/// Whether the objects of a pair are an ignored pair.
 bool is_ignored(const Scene& scene, const TrianglePair& pair,
                 const std::vector<ObjectPair>& ignored) {
   const auto owner = [&](std::uint32_t triangle) {

@@ -3,7 +3,6 @@
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"
-#include "verify/filter.h"
 #include "verify/filter_scalars.h"
 #include "verify/within.h"
 
@@ -30,15 +29,10 @@ const Triangle kUnit = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
 Triangle single_point(const Vec3& p) { return {p, p, p}; }
 
 TEST(Clearance, BetweenEveryKindOfFeatures) {
-  expect_distance_is(5, single_point({-3, -4, 0}), kUnit);  // corner and corner
-  expect_distance_is(2, {Vec3(1, -2, 0), Vec3(2, -9, 0), Vec3(1, -9, 0)}, kUnit);  // and edge
-  expect_distance_is(3, {Vec3(1, 1, 3), Vec3(2, 1, 9), Vec3(1, 2, 9)}, kUnit);     // and face
-  expect_distance_is(1, {Vec3(2, -5, 1), Vec3(2, 5, 1), Vec3(2, 0, 9)},
-                     {Vec3(-5, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -9)});          // edge and edge
-  expect_distance_is(7, kUnit, {Vec3(0, 0, 7), Vec3(4, 0, 7), Vec3(0, 4, 7)});  // parallel faces
-  expect_distance_is(5, {Vec3(0, 0, 0), Vec3(-9, 0, 0), Vec3(-9, 0, 0)},
-                     {Vec3(3, 4, 0), Vec3(9, 4, 0), Vec3(9, 4, 0)});  // segments
-  expect_distance_is(3, single_point({0, 0, 0}), single_point({2, 2, 1}));
+  for (const auto& [name, a, b, distance] : hard_pairs::known_distances()) {
+    SCOPED_TRACE(name);
+    expect_distance_is(distance, a, b);
+  }
 }
 
 TEST(Clearance, CrossingTrianglesAreWithinAny) {

@@ -7,6 +7,7 @@
 #include <CGAL/intersections.h>
 #include <CGAL/mpq_class.h>
 
+#include "tests/lab/closest.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/test.h"
@@ -128,17 +129,12 @@ Kernel::Triangle_3 in_cgal(const Triangle& t) {
   return {point(t[0]), point(t[1]), point(t[2])};
 }
 
-/// The double nearest to q, by comparing: none of the two beside it is nearer.
-bool is_nearest(double x, const Rational& q) {
-  const auto away = [&](double y) { return Rational(abs(Rational(y) - q)); };
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return away(x) <= away(std::nextafter(x, kInf)) && away(x) <= away(std::nextafter(x, -kInf));
-}
-
 /// Whether CGAL finds the same common points. Precondition: no degenerate triangle.
 bool as_cgal_says(const ContactShape& shape, const Triangle& a, const Triangle& b) {
   const auto near = [](const Vec3& end, const Kernel::Point_3& p) {
-    return is_nearest(end.x(), p.x()) && is_nearest(end.y(), p.y()) && is_nearest(end.z(), p.z());
+    return closest_reference::is_rounded(end.x(), p.x()) &&
+           closest_reference::is_rounded(end.y(), p.y()) &&
+           closest_reference::is_rounded(end.z(), p.z());
   };
   const auto found = CGAL::intersection(in_cgal(a), in_cgal(b));
   if (!found) return shape.dimension == -1;

@@ -99,7 +99,6 @@ TEST(DistanceClaims, RootsAreRoundedOnce) {
   EXPECT_TRUE(is_rounded_root(HUGE_VAL, fraction(4 * Q(1e308) * Q(1e308))));
 }
 
-/// A scene, what was asked and the right answers.
 struct Case {
   Scene scene;
   DistanceOptions options;
@@ -111,7 +110,6 @@ struct Case {
   }
 };
 
-/// The rational number, rounded to the nearest double.
 double rounded(const Q& x) {
   double out = x.get_d() + 0.0;  // cut off; never -0.0
   while (!closest_reference::is_rounded(out, x))

@@ -1,7 +1,6 @@
 // The exact predicates agree with rational arithmetic, degenerate triangles included.
 #include "verify/exact.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/rational.h"

@@ -66,7 +66,6 @@ std::vector<Triage> on_scalars(const PairsOfScene& of, double clearance) {
   return answers;
 }
 
-/// In how many places they differ.
 std::int64_t differences(const std::vector<Triage>& a, const std::vector<Triage>& b) {
   EXPECT_EQ(a.size(), b.size());
   std::int64_t count = 0;

@@ -43,20 +43,12 @@ Tally tally(const Make& make, Sharing sharing, int pairs, std::uint64_t seed = 1
     const auto beyond = [&] { return reference::intersects_beyond_shared(a, b); };
     int shared = 0;
     for (const Vec3& p : a) shared += std::ranges::find(b, p) != b.end();
-    switch (sharing) {
-      case Sharing::none:
-        out.add(filters::filter_planes<Bounds>(a, b, 0),
-                [&] { return reference::intersects(a, b); });
-        break;
-      case Sharing::vertex:
-        if (shared == 1)
-          out.add(filters::filter_beyond_vertex<Bounds>(a[0], a[1], a[2], b[1], b[2]), beyond);
-        break;
-      case Sharing::edge:
-        if (shared == 2)
-          out.add(filters::filter_beyond_edge<Bounds>(a[0], a[1], a[2], b[2]), beyond);
-        break;
-    }
+    if (sharing == Sharing::none)
+      out.add(filters::filter_planes<Bounds>(a, b, 0), [&] { return reference::intersects(a, b); });
+    if (sharing == Sharing::vertex && shared == 1)
+      out.add(filters::filter_beyond_vertex<Bounds>(a[0], a[1], a[2], b[1], b[2]), beyond);
+    if (sharing == Sharing::edge && shared == 2)
+      out.add(filters::filter_beyond_edge<Bounds>(a[0], a[1], a[2], b[2]), beyond);
   }
   return out;
 }

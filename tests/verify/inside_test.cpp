@@ -8,6 +8,7 @@
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/hard_pairs.h"
+#include "tests/lab/parts.h"
 #include "tests/lab/test.h"
 #include "verify/certificate/integer_distance.h"
 
@@ -113,30 +114,19 @@ TEST(Inside, AsTetrahedraSayOnAGrid) {
   }
 }
 
-std::vector<Triangle> cube(const Vec3& lo, const Vec3& hi) {
+/// A cube with all normals outwards, or inwards.
+std::vector<Triangle> oriented_cube(const Vec3& lo, const Vec3& hi, bool outwards = true) {
+  lab::Parts parts;
+  parts.box(lo, hi, !outwards);
   std::vector<Triangle> out;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const Vec3* side : {&lo, &hi}) {
-      std::array<Vec3, 4> p;
-      for (int i = 0; i < 4; ++i) {
-        p[i][axis] = (*side)[axis];
-        p[i][(axis + 1) % 3] = (i & 1 ? hi : lo)[(axis + 1) % 3];
-        p[i][(axis + 2) % 3] = (i & 2 ? hi : lo)[(axis + 2) % 3];
-      }
-      out.push_back({p[0], p[1], p[3]});
-      out.push_back({p[0], p[3], p[2]});
-    }
-  }
+  for (std::uint32_t t = 0; t < 12; ++t) out.push_back(parts.scene.corners(t));
   return out;
 }
 
-/// The same with all normals outwards, or inwards.
-std::vector<Triangle> oriented_cube(const Vec3& lo, const Vec3& hi, bool outwards = true) {
-  std::vector<Triangle> out = cube(lo, hi);
-  for (Triangle& t : out) {
-    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    if ((normal.dot(t[0] - (lo + hi) / 2) > 0) != outwards) std::swap(t[1], t[2]);
-  }
+/// A cube with some normals outwards, and the others inwards.
+std::vector<Triangle> cube(const Vec3& lo, const Vec3& hi) {
+  std::vector<Triangle> out = oriented_cube(lo, hi);
+  for (std::size_t t = 0; t < 6; ++t) std::swap(out[t][1], out[t][2]);
   return out;
 }
 

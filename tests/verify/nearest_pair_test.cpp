@@ -2,7 +2,6 @@
 #include "tests/lab/closest.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/scenes.h"
-#include "verify/closest.h"
 #include "verify/filter_scalars.h"
 
 namespace farcull {

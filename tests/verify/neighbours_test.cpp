@@ -1,6 +1,5 @@
 // Neighbours: what they share as neighbours is no collision, whatever is more is one. Every case
 // against rational arithmetic that shares no code with verify/.
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/drawn_pairs.h"

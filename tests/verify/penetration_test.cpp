@@ -7,7 +7,6 @@
 #include <CGAL/convex_hull_3.h>
 
 #include <Eigen/Geometry>
-#include <climits>
 
 #include "tests/lab/parts.h"
 #include "verify/convex_core.h"
@@ -157,7 +156,6 @@ long squared_depth(const Cubes& a, const Cubes& b) {
   return least;
 }
 
-/// Turns all vertices of a scene.
 void turn(Scene& scene, RandomNumbers& random) {
   const Vec3 axis(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
   const Eigen::AngleAxisd by(random.between(0, 3), axis.normalized());

@@ -2,11 +2,8 @@
 // and nothing more.
 #include "verify/worst_canvas.h"
 
-#include "experiments/scenes/builtin/scenes.h"
-#include "offsets/offsets.h"
 #include "tests/lab/far.h"
 #include "tests/lab/lemmas.h"
-#include "tests/lab/test.h"
 #include "verify/exact_point.h"
 
 namespace farcull {

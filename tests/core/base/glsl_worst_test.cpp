@@ -2,7 +2,6 @@
 // Worst must hold every result that a device may give, and stay exact where a device must be.
 #include "core/base/glsl_worst.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/rational.h"
@@ -21,44 +20,24 @@ constexpr float kLargest = std::numeric_limits<float>::max();
 
 float flushed(float x) { return std::abs(x) < kSmallest ? 0.0f : x; }
 
+/// a + b, a - b, a * b, a / b, or the root of a.
+template <class T>
+auto result_of(char operation, const T& a, const T& b) {
+  using std::sqrt;
+  if (operation == '+') return a + b;
+  if (operation == '-') return a - b;
+  if (operation == '*') return a * b;
+  return operation == '/' ? a / b : sqrt(a);
+}
+
 /// The operation on this machine's floats in one rounding mode. Through volatile operands and
 /// results, so that it cannot move out of the mode.
 float rounded(char operation, float a, float b, int mode) {
-  volatile float x = a, y = b, result = 0;
+  volatile float x = a, y = b;
   std::fesetround(mode);
-  switch (operation) {
-    case '+':
-      result = x + y;
-      break;
-    case '-':
-      result = x - y;
-      break;
-    case '*':
-      result = x * y;
-      break;
-    case '/':
-      result = x / y;
-      break;
-    default:
-      result = std::sqrt(x);
-  }
+  volatile float result = result_of(operation, x, y);
   std::fesetround(FE_TONEAREST);
   return result;
-}
-
-Worst worst(char operation, Worst a, Worst b) {
-  switch (operation) {
-    case '+':
-      return a + b;
-    case '-':
-      return a - b;
-    case '*':
-      return a * b;
-    case '/':
-      return a / b;
-    default:
-      return sqrt(a);
-  }
 }
 
 bool holds(Worst w, float x) { return w.lo() <= x && x <= w.hi(); }
@@ -92,18 +71,12 @@ float operand(Random& random) {
 /// A second operand that makes trouble with the first: cancels, is far smaller, is its neighbour or
 /// a power of two.
 float partner(Random& random, float a) {
-  switch (random.below(6)) {
-    case 0:
-      return -a;
-    case 1:
-      return std::nextafter(-a, random.coin() ? kLargest : -kLargest);
-    case 2:
-      return static_cast<float>(double(a) * random.scaled(-120, -20));
-    case 3:
-      return static_cast<float>(random.sign() * std::exp2(random.below(250) - 125));
-    default:
-      return operand(random);
-  }
+  const int kind = random.below(6);
+  if (kind == 0) return -a;
+  if (kind == 1) return std::nextafter(-a, random.coin() ? kLargest : -kLargest);
+  if (kind == 2) return static_cast<float>(double(a) * random.scaled(-120, -20));
+  if (kind == 3) return static_cast<float>(random.sign() * std::exp2(random.below(250) - 125));
+  return operand(random);
 }
 
 /// Counts results of a rounding mode beyond the range that `claimed` says, over random operands.
@@ -130,7 +103,7 @@ class Operations : public testing::TestWithParam<char> {};
 
 TEST_P(Operations, RangeHoldsAllFourRoundingModesAndFlushing) {
   const char op = GetParam();
-  EXPECT_EQ(escapes(op, 701, [op](float a, float b) { return worst(op, a, b); }), 0);
+  EXPECT_EQ(escapes(op, 701, [op](float a, float b) { return result_of<Worst>(op, a, b); }), 0);
 }
 
 // A range of one number, however well rounded, does not.
@@ -140,21 +113,13 @@ TEST_P(Operations, TheNearestFloatAloneDoesNot) {
             100'000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Worst, Operations, testing::Values('+', '-', '*', '/', 'r'),
-                         [](const auto& info) -> std::string {
-                           switch (info.param) {
-                             case '+':
-                               return "Sum";
-                             case '-':
-                               return "Difference";
-                             case '*':
-                               return "Product";
-                             case '/':
-                               return "Quotient";
-                             default:
-                               return "Root";
-                           }
-                         });
+std::string name_of(const testing::TestParamInfo<char>& info) {
+  const std::map<char, std::string> names = {
+      {'+', "Sum"}, {'-', "Difference"}, {'*', "Product"}, {'/', "Quotient"}, {'r', "Root"}};
+  return names.at(info.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(Worst, Operations, testing::Values('+', '-', '*', '/', 'r'), name_of);
 
 // rapidcheck shrinks the bits: a counterexample is two short numbers.
 RC_GTEST_PROP(Worst, HoldsSumsAndProductsOfAnyTwoFloats, ()) {
@@ -168,8 +133,8 @@ RC_GTEST_PROP(Worst, HoldsSumsAndProductsOfAnyTwoFloats, ()) {
   for (const char op : {'+', '-', '*'}) {
     for (const int mode : kModes) {
       const float x = rounded(op, a, b, mode);
-      RC_ASSERT(holds(worst(op, a, b), x));
-      RC_ASSERT(holds(worst(op, a, b), flushed(x)));
+      RC_ASSERT(holds(result_of<Worst>(op, a, b), x));
+      RC_ASSERT(holds(result_of<Worst>(op, a, b), flushed(x)));
     }
   }
 }
@@ -222,7 +187,7 @@ TEST(Worst, RangesHoldTheResultsOfTheirMembers) {
       const bool divides_by_zero = op == '/' && b.lo() <= 0 && b.hi() >= 0;
       if (divides_by_zero || !defined(op, x, y)) continue;
       for (const int mode : kModes)
-        ASSERT_TRUE(holds(worst(op, a, b), rounded(op, x, y, mode))) << x << op << y;
+        ASSERT_TRUE(holds(result_of<Worst>(op, a, b), rounded(op, x, y, mode))) << x << op << y;
     }
     ASSERT_TRUE(holds(min(a, b), std::min(x, y)));
     ASSERT_TRUE(holds(max(a, b), std::max(x, y)));

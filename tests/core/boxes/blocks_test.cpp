@@ -2,11 +2,6 @@
 // instruction set, whatever the order of the triangles. Each property has a twin that must fail.
 #include "core/boxes/triangle_blocks.h"
 
-#include <mutex>
-
-#include "core/boxes/block.h"
-#include "core/boxes/join.h"
-#include "core/boxes/meetings.h"
 #include "core/boxes/oriented.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/lanes.h"
@@ -16,43 +11,11 @@ namespace farcull {
 namespace {
 
 using lab::missed;
-using lab::Random;
+using lab::overlapping;
 using lab::random_scene;
+using lab::shuffled;
 using lab::truth_of;
 using lab::with_self;
-
-// The triangles of each object in another order.
-Scene shuffled(Scene scene, std::uint64_t seed) {
-  Random random(seed);
-  for (const Object& object : scene.objects) {
-    for (std::uint32_t k = object.triangle_count; k > 1; --k) {
-      std::swap(scene.triangles[object.first_triangle + k - 1],
-                scene.triangles[object.first_triangle +
-                                static_cast<std::uint32_t>(random.below(static_cast<int>(k)))]);
-    }
-  }
-  return scene;
-}
-
-// Pairs that count whose boxes overlap, by comparing all with all.
-std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool neighbours) {
-  const std::vector<std::uint32_t> owner = owners(scene);
-  std::vector<Box> boxes;
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
-    boxes.push_back(grown_box(scene, t, clearance));
-  std::vector<TrianglePair> out;
-  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-      if (!overlap(boxes[a], boxes[b])) continue;
-      if (owner[a] == owner[b]) {
-        if (!scene.objects[owner[a]].self) continue;
-        if (!neighbours && share_index(scene.triangles[a], scene.triangles[b])) continue;
-      }
-      out.push_back({a, b});
-    }
-  }
-  return out;
-}
 
 std::vector<Scene> small_scenes() {
   std::vector<Scene> out;
@@ -232,7 +195,6 @@ TEST(Blocks, GiveEachPairOnce) {
   EXPECT_GT(twice, 4u);
 }
 
-// Ignored objects have no pairs of blocks, and the others lose none.
 TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
   std::size_t removed = 0;
   for (const Scene& scene : small_scenes()) {
@@ -249,7 +211,6 @@ TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
   EXPECT_GT(removed, 100u);
 }
 
-// What is decided by blocks does not depend on threads.
 TEST(Blocks, DecideAlikeWhateverTheThreads) {
   std::vector<Scene> scenes = small_scenes();
   scenes.push_back(
@@ -359,7 +320,7 @@ TEST(Blocks, GrowBeyondWhatDoubleHolds) {
 }
 
 // Twins: what each ingredient is there for.
-// Every triangle of a block lies in the block's box, and in floats in its block's.
+// Every triangle of a block lies in the block's box, also in the one of floats.
 void expect_boxes_hold(const Scene& scene, const TriangleBlocks& blocks, double clearance) {
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     for (std::uint32_t k = 0; k < blocks.count(o); ++k) {

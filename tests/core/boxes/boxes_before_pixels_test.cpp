@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-
 #include "core/base/random.h"
 #include "core/boxes/block.h"
 #include "core/view/regions.h"
@@ -39,7 +36,6 @@ Scene scattered(std::uint64_t seed) {
   return scene;
 }
 
-// By comparing all boxes.
 std::vector<TrianglePair> expected(const Scene& scene, std::span<const ObjectPair> ignored,
                                    bool neighbours) {
   const std::vector<std::uint32_t> owner = owners(scene);

@@ -1,21 +1,16 @@
 // The box join finds the pairs that brute force finds.
 #include "core/boxes/join.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <mutex>
-
-#include "core/boxes/block.h"
 #include "tests/lab/boxes.h"
-#include "tests/lab/rational.h"
-#include "tests/lab/scenes.h"
-#include "tests/lab/test.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
 
 using lab::Indices;
+using lab::overlapping;
 using lab::Pairs;
 using rational::Random;
 
@@ -187,21 +182,6 @@ Scene some_scene(Random& random, int triangles) {
   return scene;
 }
 
-std::vector<TrianglePair> by_search(const Scene& scene, double clearance,
-                                    const std::vector<ObjectPair>& ignored) {
-  const std::vector<std::uint32_t> owner = owners(scene);
-  std::vector<TrianglePair> out;
-  for (std::uint32_t a = 0; a < owner.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
-      if (owner[a] == owner[b] && !scene.objects[owner[a]].self) continue;
-      if (std::ranges::find(ignored, ObjectPair{owner[a], owner[b]}) != ignored.end()) continue;
-      if (overlap(grown_box(scene, a, clearance), grown_box(scene, b, clearance)))
-        out.push_back({a, b});
-    }
-  }
-  return out;
-}
-
 std::vector<TrianglePair> streamed(const Scene& scene, double clearance,
                                    const std::vector<ObjectPair>& ignored, unsigned threads,
                                    std::size_t most) {
@@ -217,7 +197,6 @@ std::vector<TrianglePair> streamed(const Scene& scene, double clearance,
   return out;
 }
 
-// What give() gives, sorted.
 std::vector<TrianglePair> given(const Scene& scene, double clearance,
                                 const std::vector<ObjectPair>& ignored, bool neighbours,
                                 unsigned threads) {
@@ -242,34 +221,29 @@ TEST(OrderedPairs, AreAllPairsInOrderWhateverThePartsAndThreads) {
     std::vector<ObjectPair> ignored;
     if (scene.objects.size() > 2) ignored = {{0, 2}};
     const double clearance = random.coin() ? 0 : 0.25;
-    const std::vector<TrianglePair> expected = by_search(scene, clearance, ignored);
+    const std::vector<TrianglePair> expected = overlapping(scene, clearance, true, ignored);
     found += expected.size();
     for (const unsigned threads : {1u, 3u}) {
       for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}})
         EXPECT_EQ(streamed(scene, clearance, ignored, threads, most), expected) << triangles;
       EXPECT_EQ(given(scene, clearance, ignored, true, threads), expected) << triangles;
-      std::vector<TrianglePair> others = expected;
-      const std::vector<std::uint32_t> owner = owners(scene);
-      std::erase_if(others, [&](const TrianglePair& pair) {
-        return owner[pair.a] == owner[pair.b] &&
-               share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
-      });
-      EXPECT_EQ(given(scene, clearance, ignored, false, threads), others) << triangles;
+      EXPECT_EQ(given(scene, clearance, ignored, false, threads),
+                overlapping(scene, clearance, false, ignored))
+          << triangles;
     }
     // The twin: the search notices a pair of objects that is not ignored.
-    if (!ignored.empty() && by_search(scene, clearance, {}) != expected) {
+    if (!ignored.empty() && overlapping(scene, clearance) != expected) {
       EXPECT_NE(streamed(scene, clearance, {}, 1, 40), expected);
     }
   }
   EXPECT_GT(found, 200u);
 }
 
-// Two objects of triangles that all overlap.
 TEST(OrderedPairs, GivesManyPairsFromSeveralThreadsAndEndsAtAFailure) {
   const std::array<Vec3, 3> one = {Vec3(0, 0, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)};
   const std::vector<std::array<Vec3, 3>> many(400, one);
   const Scene scene = lab::scene_of({many, many});
-  EXPECT_EQ(given(scene, 0, {}, true, 3), by_search(scene, 0, {}));
+  EXPECT_EQ(given(scene, 0, {}, true, 3), overlapping(scene, 0));
   for (const unsigned threads : {1u, 3u}) {
     OrderedPairs pairs(scene, 0, {}, true, threads);
     const auto fail = [](std::vector<TrianglePair>&) { throw std::runtime_error("full"); };
@@ -282,7 +256,7 @@ TEST(OrderedPairs, OfAClearanceBeyondTheDoublesAreAllPairs) {
   Scene scene = some_scene(random, 40);
   for (Vec3& p : scene.vertices) p *= 1e307;
   constexpr double kMax = std::numeric_limits<double>::max();
-  const std::vector<TrianglePair> expected = by_search(scene, kMax, {});
+  const std::vector<TrianglePair> expected = overlapping(scene, kMax);
   EXPECT_GT(expected.size(), 500u);
   EXPECT_EQ(streamed(scene, kMax, {}, 2, 64), expected);
 }

@@ -75,10 +75,7 @@ TEST(Normals, DecideACoarseFunnelInOneMeshWithACloth) {
   for (const bool shuffled : {false, true}) {
     Scene scene = make_builtin_scene("funnel:20000:400");
     ASSERT_EQ(scene.objects.size(), 1u);
-    lab::Random random(3);
-    for (std::size_t k = scene.triangles.size(); shuffled && k > 1; --k)
-      std::swap(scene.triangles[k - 1],
-                scene.triangles[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+    if (shuffled) scene = lab::shuffled(scene, 3);
     const BlockMeetings blocks = decide_by_blocks(scene, 0, 2).blocks;
     EXPECT_EQ(blocks.oriented, nullptr);
     ASSERT_TRUE(blocks.normals);
@@ -113,30 +110,10 @@ std::vector<TrianglePair> compared(const Scene& scene, double clearance, double 
   return found.pairs;
 }
 
-// Triangles of oblique planes, and a triangle that stands on each: on the middle of an edge, or
-// `gap` above it.
-Scene standing(std::uint64_t seed, double gap) {
-  lab::Random random(seed);
-  const auto whole = [&] { return static_cast<double>(random.below(200) - 100); };
-  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
-  for (std::uint32_t k = 0; k < kWide; ++k) {
-    const Vec3 normal = Vec3(-3, 5, 1).normalized();
-    const auto corner = [&] {
-      const double x = whole(), y = whole();
-      return Vec3(x, y, 3 * x - 5 * y);
-    };
-    const std::array<Vec3, 3> flat = {corner(), corner(), corner()};
-    const Vec3 foot = 0.5 * (flat[0] + flat[1]) + gap * normal;
-    objects[0].push_back(flat);
-    objects[1].push_back({foot, foot + 50 * normal + Vec3(1, 0, 0), foot + 50 * normal});
-  }
-  return lab::scene_of(objects);
-}
-
 TEST(NormalsTwin, WithoutAMarginPairsThatTouchAreLost) {
   std::size_t pairs = 0, lost = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Scene scene = standing(seed, 0);
+    const Scene scene = lab::standing(kWide, seed);
     const std::vector<TrianglePair> truth = truth_of(scene);
     pairs += truth.size();
     EXPECT_EQ(missed(truth, compared(scene, 0, 0x1p-20 * 2000)), 0u);
@@ -148,7 +125,7 @@ TEST(NormalsTwin, WithoutAMarginPairsThatTouchAreLost) {
 
 TEST(NormalsTwin, MarginsWithoutTheClearanceMissPairsOfAClearance) {
   constexpr double kClearance = 1, kMargin = 0x1p-20 * 2000;
-  const Scene scene = standing(1, 0.98 * kClearance);
+  const Scene scene = lab::standing(kWide, 1, 0.98 * kClearance);
   const std::vector<TrianglePair> truth = truth_of(scene, kClearance);
   EXPECT_GE(truth.size(), kWide);
   EXPECT_EQ(missed(truth, compared(scene, kClearance, kMargin + 1.001 * kClearance)), 0u);

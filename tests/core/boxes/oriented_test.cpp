@@ -2,7 +2,6 @@
 // order of the triangles, and slivers leave few pairs. Each property has a twin that must fail.
 #include "core/boxes/oriented.h"
 
-#include "core/boxes/meetings.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/pairs.h"
@@ -114,7 +113,6 @@ TEST(Oriented, DecideAPartThatIsCut) {
   EXPECT_EQ(missed(truth_of(scene), pairs), 0u);
   EXPECT_LT(pairs.size(), 16 * scene.triangles.size());
   EXPECT_EQ(pairs_of_boxes(scene, {}, true, 2), std::nullopt) << "boxes along the axes alone";
-  // Boxes along the axes leave many more.
   EXPECT_GT(all_colliding_pairs(scene).box_pairs, 10 * pairs.size());
 }
 
@@ -124,24 +122,6 @@ TEST(Oriented, AreNotMadeOfCoordinatesThatFloatsCannotHold) {
     EXPECT_EQ(oriented(scene, 0), nullptr);
     EXPECT_NE(oriented(transformed(scene, 1 / scale, Vec3::Zero()), 0), nullptr);
   }
-}
-
-// Triangles of an oblique plane, and others that stand on the middles of their edges.
-Scene standing(std::uint64_t seed) {
-  lab::Random random(seed);
-  const auto whole = [&] { return static_cast<double>(random.below(200) - 100); };
-  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
-  for (int k = 0; k < 400; ++k) {
-    const auto corner = [&] {
-      const double x = whole(), y = whole();
-      return Vec3(x, y, 3 * x - 5 * y);
-    };
-    const std::array<Vec3, 3> flat = {corner(), corner(), corner()};
-    const Vec3 foot = 0.5 * (flat[0] + flat[1]), up(-30, 50, 10);
-    objects[0].push_back(flat);
-    objects[1].push_back({foot, foot + up + Vec3(1, 0, 0), foot + up});
-  }
-  return lab::scene_of(objects);
 }
 
 // The boxes of triangles as they are without a margin.
@@ -165,7 +145,7 @@ std::shared_ptr<OrientedBlocks> without_margin(const OrientedBlocks& blocks) {
 }
 
 TEST(OrientedTwin, WithoutAMarginPairsThatTouchAreLost) {
-  const Scene scene = standing(1);
+  const Scene scene = lab::standing(400, 1);
   const std::vector<TrianglePair> truth = truth_of(scene);
   ASSERT_GE(truth.size(), 400u);
   const auto blocks = oriented(scene, 0);

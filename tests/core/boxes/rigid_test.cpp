@@ -185,7 +185,7 @@ Losses losses(const MoveBox& move_box) {
       const Vec3 at = moved(motion, p);
       const Box whole = move_box(motion, box);
       out.vertices += !overlap(whole, Box{at, at});
-      // Some resting triangle that lies beyond the corner, and ends there.
+      // The box of a triangle that does not move: it begins at the corner and lies beyond it.
       Box other{at, at};
       other.add(Vec3(at + (at - 0.5 * whole.lo - 0.5 * whole.hi)));
       out.pairs += !overlap(whole, other);

@@ -2,9 +2,6 @@
 // depends on nothing that it should not depend on. Each property has a twin that must fail.
 #include "core/boxes/search.h"
 
-#include <mutex>
-
-#include "core/boxes/block.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/pairs.h"
 
@@ -165,16 +162,6 @@ TEST(Boxes, OfWhatBlocksDoNotDecideATreeFindsThePairs) {
       EXPECT_GT(truth.size(), 1000u);
       EXPECT_EQ(missed(truth, listed.candidates), 0u);
     }
-  }
-}
-
-// The answer and the decision are those of one thread.
-TEST(Boxes, DependOnNoThreads) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    const Scene scene = seed % 2 == 0 ? random_scene(seed) : with_self(random_scene(seed));
-    const BoxesPlan one = plan_boxes(scene, {}, 1), five = plan_boxes(scene, {}, 5);
-    ASSERT_EQ(one.decision.tree, five.decision.tree);
-    ASSERT_EQ(find_boxes(scene, one).candidates, find_boxes(scene, five).candidates) << seed;
   }
 }
 

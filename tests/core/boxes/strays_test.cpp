@@ -1,7 +1,6 @@
 // The method boxes takes no more work than `exact`, a constant factor apart, wherever triangles lie
 // and however large they are. Work is counted, so that a loaded machine changes nothing.
 #include "core/boxes/block.h"
-#include "core/boxes/join.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -14,7 +13,6 @@ using lab::Random;
 
 constexpr int kTriangles = 8000;  // of an object
 
-/// How a scene of strays is made.
 struct Strays {
   int outliers = 0;      // 0 to 10: triangles, or corners of triangles
   double decades = 0;    // 0 to 300: of the sizes of the others
@@ -75,18 +73,14 @@ Scene stray_scene(std::uint64_t seed, int triangles, const Strays& strays) {
     auto& one = object[static_cast<std::size_t>(random.below(static_cast<int>(object.size())))];
     const double far =
         std::pow(10, strays.exponent >= 0 ? strays.exponent : random.between(0, 300));
-    switch (random.below(3)) {
-      case 0:  // huge
-        for (Vec3& corner : one) corner = far * direction();
-        break;
-      case 1:  // a bad corner
-        one[0] = far * direction();
-        break;
-      default: {  // as large as before, far away
-        const Vec3 by = far * direction();
-        for (Vec3& corner : one) corner += by;
-      }
-    }
+    const int kind = random.below(3);
+    const Vec3 by = far * direction();
+    if (kind == 0)  // huge
+      one = {by, far * direction(), far * direction()};
+    else if (kind == 1)  // a bad corner
+      one[0] = by;
+    else  // as large as before, far away
+      for (Vec3& corner : one) corner += by;
   }
   Scene scene = lab::scene_of(objects);
   scene.objects[0].self = strays.self;
@@ -163,39 +157,29 @@ TEST(StraysTwin, BlocksOfScatteredTrianglesTakeTooMuchWork) {
 // Three triangles in a hundred are large, in a file that scatters them all.
 TEST(Strays, LargeTrianglesAreInBlocksOfTheirOwn) {
   const Scene rest = make_builtin_scene("funnel:12000:400");
-  const auto in_order = [&](const auto& shuffle) {
-    Scene scene = rest;
-    lab::Random random(7);
-    shuffle(scene.triangles, random);
-    return scene;
-  };
   const auto pairs_of = [](const TriangleBlocks& blocks) {
     std::vector<BlockPair> pairs;
     pair_blocks(BlockTrees(blocks, blocks.objects), 0, 0, 0, blocks.first[1], SIZE_MAX, pairs);
     return pairs.size();
   };
-  const Scene scattered = in_order([](auto& triangles, Random& random) {
-    for (std::size_t k = triangles.size(); k > 1; --k)
-      std::swap(triangles[k - 1],
-                triangles[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
-  });
+  const Scene scattered = lab::shuffled(rest, 7);
   const BoxesResult result = found(scattered, {}, 2);
   EXPECT_EQ(wrong(scattered, result), "");
   EXPECT_EQ(result.stage.reason, Reason::normal_pairs);
   const std::size_t own = pairs_of(make_ordered_blocks(scattered, 0, 2));
   EXPECT_EQ(result.stage.n, own);
   // The twin: among the small ones, each near the place where it lies, they enlarge their blocks.
-  const Scene among = in_order([](auto& triangles, Random&) {
-    const std::size_t large = 400, small = triangles.size() - large;
-    std::vector<std::array<std::uint32_t, 3>> out;
-    for (std::size_t k = 0; k < small; ++k) {
-      out.push_back(triangles[k]);
-      if (k % (small / large) == 0 && out.size() < k + large)
-        out.push_back(triangles[small + k / (small / large)]);
-    }
-    while (out.size() < triangles.size()) out.push_back(triangles[out.size()]);
-    triangles = out;
-  });
+  const auto& triangles = rest.triangles;
+  const std::size_t large = 400, small = triangles.size() - large;
+  Scene among = rest;
+  among.triangles.clear();
+  for (std::size_t k = 0; k < small; ++k) {
+    among.triangles.push_back(triangles[k]);
+    if (k % (small / large) == 0 && among.triangles.size() < k + large)
+      among.triangles.push_back(triangles[small + k / (small / large)]);
+  }
+  while (among.triangles.size() < triangles.size())
+    among.triangles.push_back(triangles[among.triangles.size()]);
   EXPECT_GT(pairs_of(make_blocks(among, 0, 2)), 4 * own);
 }
 

@@ -29,42 +29,25 @@ Points random_polygon(Random& random, const Window& window) {
   };
   const auto kept = [&](const Vec3& p) { return Vec3(p.cwiseMax(window.lo).cwiseMin(window.hi)); };
   Points points;
-  switch (random.below(7)) {
-    case 0:
-      for (int i = 0; i < 3 + random.below(7); ++i) points.push_back(inside());
-      break;
-    case 1: {  // needle
-      const Vec3 a = inside(), b = inside();
-      points = {a, b, kept(a + (b - a) * random.uniform(0, 1) + random.scaled3(-60, 0))};
-      break;
-    }
-    case 2: {  // point-like, down to one point
-      const Vec3 a = inside();
-      points = {a, kept(a + random.scaled3(-300, -20)), random.coin() ? a : kept(a * (1 + 1e-12))};
-      break;
-    }
-    case 3: {  // end-on: a line in space, a point in the image
-      Vec3 a = inside(), b = a, c = a;
-      b[2] = window.lo[2];
-      c[2] = window.hi[2];
-      points = {a, b, c};
-      break;
-    }
-    case 4: {  // covers the window
-      points = {window.lo, Vec3(window.hi[0], window.lo[1], 0), window.hi,
-                Vec3(window.lo[0], window.hi[1], 0)};
-      break;
-    }
-    case 5: {  // along the diagonal of the window: the rectangle around it does not fit
-      points = {window.lo, window.hi, kept(inside() * 0x1p-10)};
-      break;
-    }
-    default: {  // small
-      const Vec3 a = inside();
-      for (int i = 0; i < 3; ++i) points.push_back(kept(a + random.scaled3(-8, 4)));
-      break;
-    }
+  const int kind = random.below(7);
+  const Vec3 a = inside();
+  if (kind == 0)
+    for (int i = 0; i < 3 + random.below(7); ++i) points.push_back(inside());
+  if (kind == 1) {  // needle
+    const Vec3 b = inside();
+    points = {a, b, kept(a + (b - a) * random.uniform(0, 1) + random.scaled3(-60, 0))};
   }
+  if (kind == 2)  // point-like, down to one point
+    points = {a, kept(a + random.scaled3(-300, -20)), random.coin() ? a : kept(a * (1 + 1e-12))};
+  if (kind == 3)  // end-on: a line in space, a point in the image
+    points = {a, Vec3(a[0], a[1], window.lo[2]), Vec3(a[0], a[1], window.hi[2])};
+  if (kind == 4)  // covers the window
+    points = {window.lo, Vec3(window.hi[0], window.lo[1], 0), window.hi,
+              Vec3(window.lo[0], window.hi[1], 0)};
+  if (kind == 5)  // along the diagonal of the window: the rectangle around it does not fit
+    points = {window.lo, window.hi, kept(a * 0x1p-10)};
+  if (kind == 6)  // small
+    for (int i = 0; i < 3; ++i) points.push_back(kept(a + random.scaled3(-8, 4)));
   return points;
 }
 

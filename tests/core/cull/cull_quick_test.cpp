@@ -1,7 +1,6 @@
 // Quick-CULLIDE against plain CULLIDE, step by step on their common schedule: theorem 3 of
 // docs/reliability.md, "Quick-CULLIDE". The level of clusters, and runs in sequence.
 #include "core/base/text.h"
-#include "core/cull/clusters.h"
 #include "experiments/record/stage_words.h"
 #include "tests/lab/cull.h"
 
@@ -140,13 +139,6 @@ TEST(CullSequence, BitsThatAreNoFactsLosePairs) {
     }
   }
   EXPECT_GT(lost, 0u);
-}
-
-TEST(CullSequence, RefusesBitsOfAnotherScene) {
-  const Drawing exact = lab::on_worst(minkowski_fattener());
-  CullSettings settings = lab::cull_settings(exact, "x", 12);
-  settings.bits = {0};
-  EXPECT_THROW(lab::run_by(kQuickRule, lab::random_scene(1), exact, settings), std::logic_error);
 }
 
 }  // namespace

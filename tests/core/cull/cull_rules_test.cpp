@@ -5,11 +5,8 @@
 #include "core/base/text.h"
 #include "core/boxes/join.h"
 #include "core/native/canvas.h"
-#include "core/view/regions.h"
 #include "experiments/record/stage_words.h"
-#include "offsets/offsets.h"
 #include "tests/lab/cull.h"
-#include "tests/lab/scenes.h"
 #include "verify/accounting.h"
 
 namespace farcull {
@@ -153,7 +150,6 @@ TEST(CullSelf, TheStrictTestAndObjectsAsOwnersLoseConflicts) {
   EXPECT_GT(objects, 0);
 }
 
-// With a fattener and triangles as owners nothing is missed inside objects either.
 TEST(CullSelf, FattenedTrianglesAsOwnersMissNothing) {
   const Drawing obb = lab::on_worst(obb_fattener());
   std::size_t pairs = 0, culled = 0;
@@ -197,13 +193,18 @@ Indices live(const Scene& scene, const Drawing& drawing, const CullSettings& set
   return cull(scene, find_regions(scene), settings, *drawing.canvas).live;
 }
 
-TEST(CullRules, ObjectsAloneNeedObjectsThatOwn) {
+TEST(CullRules, RefusesWhatDoesNotFitTheScene) {
   const Drawing drawing = raw_on_ideal();
   const Scene scene = scene_of(random_small(1, 10), true);
-  CullSettings settings = cull_settings(drawing, "x", kPixels);
-  settings.self = settings.objects_alone = true;
-  EXPECT_THROW(cull(scene, find_regions(scene, {.self = true}), settings, *drawing.canvas),
-               std::logic_error);
+  const CullSettings fits = cull_settings(drawing, "x", kPixels);
+  CullSettings bits = fits, owners = fits, alone = fits;
+  bits.bits = {0};
+  owners.owners.resize(3);
+  alone.self = alone.objects_alone = true;  // then triangles own, and there are no objects to ask
+  for (const CullSettings& settings : {bits, owners, alone}) {
+    EXPECT_THROW(cull(scene, find_regions(scene, {.self = true}), settings, *drawing.canvas),
+                 std::logic_error);
+  }
 }
 
 // With offsets that promise, every form keeps the promise; raw triangles do not, on the same
@@ -234,7 +235,6 @@ TEST(CullRules, FarMissesNothingInAnyForm) {
   EXPECT_GT(missed_raw, 0u) << "the twin: raw triangles miss";
 }
 
-// A plan says what a run does, in every form.
 TEST(CullRules, PlansNameTheStagesOfTheFirstRound) {
   const Drawing drawing = raw_on_ideal();
   const Scene scene = scene_at(5);

@@ -8,7 +8,6 @@
 #include "tests/lab/canvas.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/reference.h"
-#include "tests/lab/test.h"
 #include "verify/accounting.h"
 
 namespace farcull {

@@ -60,7 +60,6 @@ struct Rules {
   bool reads_bits_in_order = true;  // of two owners, L of the earlier and F of the later are read
 };
 
-/// The level at which each triangle is asked alone.
 inline Level singles(const std::vector<Set>& owners) {
   Level out;
   for (const Set owner : owners) {
@@ -70,7 +69,6 @@ inline Level singles(const std::vector<Set>& owners) {
   return out;
 }
 
-/// The level at which each owner is asked as a whole.
 inline Level wholes(const std::vector<Set>& owners) {
   Level out;
   for (const Set owner : owners) out.push_back({owner});
@@ -176,7 +174,6 @@ constexpr Set kNever = ~Set{0};  // no set of triangles
 /// Per view and pass over single triangles: what it stored when it last ran.
 using Memory = std::array<std::array<Set, 2>, kMostViews>;
 
-/// Both passes of one level.
 template <class Watch>
 Bits run_level(const World& world, const Schedule& s, Step step, Bits bits, Memory& memory,
                const Watch& watch) {
@@ -209,7 +206,6 @@ inline int count_live(const World& world, const Bits& bits) {
   return std::popcount(world.region & ~bits.culled());
 }
 
-/// The levels of one view.
 template <class Watch>
 Bits visit(const World& world, const Schedule& s, int round, int view, Bits bits, Memory& memory,
            const Watch& watch) {

@@ -7,11 +7,9 @@
 #include "experiments/record/stage_words.h"
 #include "tests/core/cull/model.h"
 #include "tests/lab/canvas.h"
-#include "tests/lab/test.h"
 
 namespace farcull::model {
 
-/// A world and a schedule, for the model and for core/cull.
 struct Case {
   World world;
   Schedule schedule;
@@ -357,7 +355,6 @@ inline void add_scene(lab::Random& random, int n, bool marks, Case& c) {
   add_points(place, c.scene);
 }
 
-/// The owners of the world, and of the patches.
 inline void add_owners(lab::Random& random, Owners kind, Case& c) {
   for (const Object& object : c.scene.objects) {
     const bool marked = object.self && kind != Owners::objects;
@@ -420,7 +417,6 @@ inline void add_levels(lab::Random& random, Owners kind, Case& c) {
   c.levels.emplace_back("triangles");
 }
 
-/// A case of at most `most` triangles.
 inline Case random_case(std::uint64_t seed, int most) {
   lab::Random random(seed);
   Case c;

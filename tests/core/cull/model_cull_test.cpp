@@ -82,7 +82,6 @@ struct Contents {
   }
 };
 
-// Whether some bit of `outcome` is one that theorem 2 forbids.
 bool breaks(const Case& c, const Outcome& outcome, const Bits& no) {
   const std::vector<std::uint8_t> forbidden = bits_of(c, no);
   const auto wrong = [&](const std::vector<std::uint8_t>& bits) {

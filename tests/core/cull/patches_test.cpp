@@ -2,12 +2,7 @@
 // allow nothing is missed; without one of the parts of the argument pairs are lost.
 #include "core/cull/patches.h"
 
-#include <numeric>
-
-#include "core/boxes/join.h"
 #include "core/boxes/meetings.h"
-#include "core/cull/pass.h"
-#include "core/view/regions.h"
 #include "tests/lab/far.h"
 #include "verify/worst_canvas.h"
 
@@ -37,7 +32,6 @@ struct Found {
   std::uint64_t avoided = 0;  // pairs with overlapping boxes that are not left to test
 };
 
-// Cuts, culls, joins and accounts for every pair.
 Found far_self_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
                   const Asked& asked) {
   std::vector<std::uint32_t> all(scene.triangles.size());
@@ -130,7 +124,6 @@ Scene crumpled(std::uint64_t seed) {
   return scene;
 }
 
-// How a scene is asked about, by its seed.
 Asked asked_of(std::uint64_t seed) {
   lab::Random random(seed + 1000);
   const auto any = [&](const auto& of) { return of[random.below(static_cast<int>(of.size()))]; };
@@ -334,19 +327,6 @@ TEST(Patches, HaveASixteenthOfTheLargestMarkedObjectWithinBounds) {
   EXPECT_EQ(size(32000, 1000000), 2000u);
   EXPECT_EQ(size(100, 1000000), 256u);
   EXPECT_EQ(size(1000000, 0), 4096u);
-}
-
-TEST(Patches, OwnersOfAnotherSceneAreRefused) {
-  const Scene scene = crumpled(0);
-  const Fattener fattener = obb_fattener();
-  WorstCanvas canvas(fattener.solid);
-  const CullSettings settings{.views = parse_views("x"),
-                              .resolution = 16,
-                              .fattener = fattener,
-                              .radius = {},
-                              .owners = std::vector<std::uint32_t>(3)};
-  EXPECT_THROW(cull(scene, find_regions(scene, {.self = true}), settings, canvas),
-               std::logic_error);
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 // Theorems 8 and 10: what a radius below the budget loses, on models of devices that round corners.
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
-#include "offsets/offsets.h"
 #include "tests/lab/far.h"
-#include "tests/lab/scenes.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

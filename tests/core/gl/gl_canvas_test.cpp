@@ -1,5 +1,4 @@
 // The GL canvas does what core/canvas/canvas.h specifies, and notices every fault of assumption A7.
-#include "core/base/error.h"
 #include "core/gl/base/driver_fault.h"
 #include "offsets/offsets.h"
 #include "tests/lab/gl.h"
@@ -35,7 +34,6 @@ struct Layers {
   }
 };
 
-// The canvas has begun with the layers.
 struct Drawn {
   explicit Drawn(const Fattener& by = obb_fattener(), const GlCanvasOptions& options = {})
       : fattener(by), canvas(lab::context(), by.mode, by.solid, options) {
@@ -156,7 +154,6 @@ TEST(GlCanvas, SendsNothingTwice) {
       EXPECT_EQ(canvas.run(layers.pass(view, 0, 1)), right);
     }
   }
-  // Whatever changes is sent.
   Drawables moved = views[1];
   moved.proxies.back().corners[0] -= 0.125f;
   const std::uint64_t before = canvas.work().uploaded_bytes;

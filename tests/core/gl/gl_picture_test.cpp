@@ -1,6 +1,5 @@
 // Pictures on the device: which pixels a triangle covers, in which colour, and which of two is in
 // front.
-#include "core/base/error.h"
 #include "core/gl/picture/picture.h"
 #include "tests/lab/gl.h"
 #include "tests/lab/scenes.h"
@@ -52,7 +51,6 @@ TEST(GlPicture, CoversThePixelsInsideAndNoneOutside) {
   }
 }
 
-// The nearer one is green, whichever comes first.
 bool nearer_hides_farther() {
   const Scene scene = scene_of({square_half(-0.5), square_half(0.5)});  // seen along -z
   std::vector<PictureTriangle> order = {{.triangle = 0, .colour = kRed, .shaded = false},

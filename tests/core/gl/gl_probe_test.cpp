@@ -17,7 +17,6 @@ std::vector<ProbeResult> run(ProbeOptions options, const std::string& only) {
   return run_probes(context(), options);
 }
 
-// The names of the probes that fail.
 std::set<std::string> failures(const ProbeOptions& options, const std::string& only) {
   std::set<std::string> out;
   for (const ProbeResult& r : run(options, only)) {

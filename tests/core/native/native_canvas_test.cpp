@@ -322,7 +322,6 @@ TEST(NativeCanvas, HoldsTheSamplesUnderTheDepthMap) {
 
 // ---- raw triangles ----
 
-/// How many of the triangles cover each pixel.
 std::vector<int> coverage(const Window& w, const std::vector<Patch>& patches) {
   const Fattener fattener = raw_triangles();
   std::vector<int> out(static_cast<std::size_t>(w.width) * w.height);
@@ -394,46 +393,25 @@ TEST(NativeTriangles, DepthIsInterpolatedAtPixelCentres) {
   EXPECT_GT(covered, 400);
 }
 
-// ---- misuse ----
-
 // Whether the closed square of a pixel and a triangle with corners on the subpixel grid have a
-// point in common: a corner of one inside the other, or sides that cross. In whole subpixels.
+// point in common. Convex polygons have none iff a normal of one of their edges separates them. In
+// whole subpixels.
 bool touches(const std::array<std::array<std::int64_t, 2>, 3>& t, std::int64_t x, std::int64_t y) {
   constexpr std::int64_t kSide = 256;
   using Point = std::array<std::int64_t, 2>;
-  const Point square[4] = {{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}};
-  const auto turn = [](const Point& a, const Point& b, const Point& c) {
-    const std::int64_t area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    return (area > 0) - (area < 0);
-  };
-  const auto between = [](const Point& a, const Point& b, const Point& p) {
-    return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) &&
-           std::min(a[1], b[1]) <= p[1] && p[1] <= std::max(a[1], b[1]);
-  };
-  const auto meet = [&](const Point& a, const Point& b, const Point& c, const Point& d) {
-    const int abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
-    if (abc * abd < 0 && cda * cdb < 0) return true;
-    return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
-           (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
-  };
-  const auto inside = [&](const Point* of, int count, const Point& p) {
-    bool left = false, right = false;
-    for (int i = 0; i < count; ++i) {
-      const int side = turn(of[i], of[(i + 1) % count], p);
-      left |= side > 0;
-      right |= side < 0;
-    }
-    return !(left && right) && (left || right);
-  };
-  for (const Point& p : square)
-    if (inside(t.data(), 3, p)) return true;
-  for (const Point& p : t)
-    if (inside(square, 4, p)) return true;
+  std::vector<Point> normals = {{1, 0}, {0, 1}};
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 4; ++k)
-      if (meet(t[i], t[(i + 1) % 3], square[k], square[(k + 1) % 4])) return true;
+    const Point &a = t[i], &b = t[(i + 1) % 3];
+    normals.push_back({b[1] - a[1], a[0] - b[0]});
   }
-  return false;
+  for (const Point& n : normals) {
+    const auto along = [&](const Point& p) { return n[0] * p[0] + n[1] * p[1]; };
+    const auto [low, high] = std::minmax({along(t[0]), along(t[1]), along(t[2])});
+    const auto [from, to] = std::minmax({along({x, y}), along({x + kSide, y}),
+                                         along({x, y + kSide}), along({x + kSide, y + kSide})});
+    if (high < from || to < low) return false;
+  }
+  return true;
 }
 
 // Points, slivers and triangles below a pixel among them. Corners lie on the subpixel grid, so that
@@ -489,6 +467,8 @@ TEST(NativeTriangles, ConservativelyCoverWhateverTheyTouch) {
     EXPECT_GT(plain_lacks, 0) << "the twin: samples at centres do not cover all of them";
   });
 }
+
+// ---- misuse ----
 
 TEST(NativeCanvas, RefusesWhatItCannotDraw) {
   EXPECT_THROW(NativeCanvas(DepthMode::fragment, {}), std::logic_error);

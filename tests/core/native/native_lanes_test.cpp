@@ -5,8 +5,6 @@
 #include "tests/lab/lanes.h"
 #include "tests/lab/scenes.h"
 #include "tests/lab/solids.h"
-#include "verify/kernel_cases.h"
-#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace {

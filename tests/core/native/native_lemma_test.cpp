@@ -2,8 +2,6 @@
 // worst canvas that keeps the same promises.
 #include "core/native/canvas.h"
 
-#include "offsets/offsets.h"
-#include "tests/lab/canvas.h"
 #include "tests/lab/far.h"
 #include "tests/lab/lanes.h"
 #include "tests/lab/lemmas.h"

@@ -24,25 +24,17 @@ std::array<Triangle, 2> random_pair(Random& random) {
     a[k] = place + random.cube(size);
     b[k] = place + random.cube(other) + Vec3(random.below(2) * 0.5, 0, 0);
   }
-  switch (random.below(6)) {
-    case 0:  // a needle
-      a[2] = a[1] + random.cube(size * 0x1p-25);
-      break;
-    case 1:  // a corner a little beside a corner, or at it
-      b[0] = a[0] + random.cube(1) * std::exp2(random.uniform(-60, -20));
-      break;
-    case 2:  // a corner a little beside the face, or on it
-      b[0] = (a[0] + a[1] + a[2]) / 3 + random.cube(1) * std::exp2(random.uniform(-60, -20));
-      break;
-    case 3:  // nearly parallel
-      for (int k = 0; k < 3; ++k) b[k] = a[k] + Vec3(0, 0, size) + random.cube(0x1p-40);
-      break;
-    case 4:  // an edge beside an edge
-      b[0] = 0.5 * (a[0] + a[1]) + random.cube(size * 0x1p-30);
-      b[1] = 2 * b[0] - a[2] + random.cube(size * 0x1p-30);
-      break;
-    default:
-      break;
+  const int kind = random.below(6);
+  if (kind == 0) a[2] = a[1] + random.cube(size * 0x1p-25);  // a needle
+  if (kind == 1)  // a corner a little beside a corner, or at it
+    b[0] = a[0] + random.cube(1) * std::exp2(random.uniform(-60, -20));
+  if (kind == 2)  // a corner a little beside the face, or on it
+    b[0] = (a[0] + a[1] + a[2]) / 3 + random.cube(1) * std::exp2(random.uniform(-60, -20));
+  if (kind == 3)  // nearly parallel
+    for (int k = 0; k < 3; ++k) b[k] = a[k] + Vec3(0, 0, size) + random.cube(0x1p-40);
+  if (kind == 4) {  // an edge beside an edge
+    b[0] = 0.5 * (a[0] + a[1]) + random.cube(size * 0x1p-30);
+    b[1] = 2 * b[0] - a[2] + random.cube(size * 0x1p-30);
   }
   return {a, b};
 }

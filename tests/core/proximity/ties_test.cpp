@@ -4,7 +4,6 @@
 #include "tests/lab/closest.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/test.h"
-#include "verify/closest.h"
 
 namespace farcull {
 namespace {

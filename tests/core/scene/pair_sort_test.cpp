@@ -1,8 +1,6 @@
 // Pairs that are sorted, and collected in bounded memory.
 #include "core/scene/pair_sort.h"
 
-#include <set>
-
 #include "tests/lab/scenes.h"
 
 namespace farcull {

@@ -1,16 +1,13 @@
 // Validation, boxes, owners and fingerprints of scenes; pairs of triangles of ignored objects,
 // against a search through the list.
-#include "core/scene/scene.h"
 
 #include <gtest/gtest-spi.h>
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/rational.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/scenes.h"
-#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {

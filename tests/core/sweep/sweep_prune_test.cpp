@@ -1,6 +1,5 @@
 // Sweep and prune on scenes, and of boxes: as brute force, from frame to frame. Its twins are the
 // mutants of core/sweep (tests/mutants).
-#include <gtest/gtest.h>
 
 #include "tests/lab/boxes.h"
 
@@ -93,19 +92,10 @@ void move_objects(Moving& moving, Random& random, int kind) {
     if (random.below(30) == 0) by = random.cube(5);
     for (std::size_t t = first; t < first + size; ++t) {
       moving.boxes[t] = {moving.boxes[t].lo + by, moving.boxes[t].hi + by};
-      switch (random.below(200)) {
-        case 0:
-          moving.boxes[t].lo = moving.boxes[t].hi;
-          break;
-        case 1:
-          moving.boxes[t] = cube(-0.0, 0.0);
-          break;
-        case 2:
-          moving.boxes[t] = moving.boxes[0];
-          break;
-        default:
-          break;
-      }
+      const int change = random.below(200);
+      if (change == 0) moving.boxes[t].lo = moving.boxes[t].hi;
+      if (change == 1) moving.boxes[t] = cube(-0.0, 0.0);
+      if (change == 2) moving.boxes[t] = moving.boxes[0];
     }
     first += size;
   }

@@ -59,54 +59,47 @@ inline Vec3 in_region(Random& random, const Window& window) {
 inline Triangle random_triangle(Random& random, const Window& window) {
   Triangle px;
   const double reach = random.below(3) == 0 ? 45 : 14;  // log2 of px
-  switch (random.below(7)) {
-    case 0:  // corners anywhere
-      for (Vec3& p : px) p = in_region(random, window) + random.scaled3(-20, reach);
-      break;
-    case 1: {  // around a point of the region, whatever the size
-      const Vec3 p = in_region(random, window);
-      const Vec3 e = random.scaled3(-20, reach), f = random.scaled3(-20, reach);
-      px = {p + e, p + f, p - e - f};
-      break;
-    }
-    case 2: {  // a needle through the region
-      const Vec3 p = in_region(random, window), e = random.scaled3(0, reach);
-      px = {p - e, p + e * random.uniform(0, 1), p + random.scaled3(-40, 2)};
-      break;
-    }
-    case 3: {  // along an edge of the region's box: an ulp decides on which side a corner is
-      const int axis = random.below(3);
-      const double length = std::exp2(random.uniform(2, reach));
-      for (Vec3& p : px) {
-        for (int i = 0; i < 3; ++i) {
-          p[i] = (i == (axis + 1) % 3 ? window.lo : window.hi)[i] +
-                 length * random.scaled(-56, -48) * random.below(2);
-        }
-        p[axis] = random.uniform(-length, length);
-      }
-      break;
-    }
-    case 4: {  // a corner on a corner of the box, or just inside the margin
-      for (Vec3& p : px) p = in_region(random, window) + random.scaled3(-5, reach);
+  const int kind = random.below(7);
+  if (kind == 0) {  // corners anywhere
+    for (Vec3& p : px) p = in_region(random, window) + random.scaled3(-20, reach);
+  }
+  if (kind == 1) {  // around a point of the region, whatever the size
+    const Vec3 p = in_region(random, window);
+    const Vec3 e = random.scaled3(-20, reach), f = random.scaled3(-20, reach);
+    px = {p + e, p + f, p - e - f};
+  }
+  if (kind == 2) {  // a needle through the region
+    const Vec3 p = in_region(random, window), e = random.scaled3(0, reach);
+    px = {p - e, p + e * random.uniform(0, 1), p + random.scaled3(-40, 2)};
+  }
+  if (kind == 3) {  // along an edge of the region's box: an ulp decides on which side a corner is
+    const int axis = random.below(3);
+    const double length = std::exp2(random.uniform(2, reach));
+    for (Vec3& p : px) {
       for (int i = 0; i < 3; ++i) {
-        const double inset = random.below(2);
-        px[0][i] = random.coin() ? window.lo[i] + inset : window.hi[i] - inset;
+        p[i] = (i == (axis + 1) % 3 ? window.lo : window.hi)[i] +
+               length * random.scaled(-56, -48) * random.below(2);
       }
-      break;
+      p[axis] = random.uniform(-length, length);
     }
-    case 5: {  // degenerate: a segment or a point
-      const Vec3 p = in_region(random, window) + random.scaled3(-20, reach);
-      px = {p, p, random.coin() ? p : in_region(random, window)};
-      break;
+  }
+  if (kind == 4) {  // a corner on a corner of the box, or just inside the margin
+    for (Vec3& p : px) p = in_region(random, window) + random.scaled3(-5, reach);
+    for (int i = 0; i < 3; ++i) {
+      const double inset = random.below(2);
+      px[0][i] = random.coin() ? window.lo[i] + inset : window.hi[i] - inset;
     }
-    default: {  // lies in a plane of the box, or covers the whole of it
-      const int axis = random.below(3);
-      const double at = random.coin() ? window.lo[axis] : random.uniform(window.lo[axis], 0);
-      for (Vec3& p : px) {
-        p = random.scaled3(0, reach);
-        p[axis] = at;
-      }
-      break;
+  }
+  if (kind == 5) {  // degenerate: a segment or a point
+    const Vec3 p = in_region(random, window) + random.scaled3(-20, reach);
+    px = {p, p, random.coin() ? p : in_region(random, window)};
+  }
+  if (kind == 6) {  // lies in a plane of the box, or covers the whole of it
+    const int axis = random.below(3);
+    const double at = random.coin() ? window.lo[axis] : random.uniform(window.lo[axis], 0);
+    for (Vec3& p : px) {
+      p = random.scaled3(0, reach);
+      p[axis] = at;
     }
   }
   Triangle corners;

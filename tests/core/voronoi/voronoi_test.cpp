@@ -2,7 +2,6 @@
 // against all cells one by one, the reliable form against all pairs in rationals.
 #include "core/voronoi/voronoi.h"
 
-#include "core/base/error.h"
 #include "tests/lab/voronoi.h"
 
 namespace farcull {
@@ -13,7 +12,6 @@ using rational::Q;
 
 Q squared(const Q& x) { return x * x; }
 
-// Objects of one triangle each.
 Scene scene_of_triangles(const std::vector<std::array<Vec3, 3>>& triangles) {
   std::vector<std::vector<std::array<Vec3, 3>>> objects;
   for (const auto& t : triangles) objects.push_back({t});
@@ -26,25 +24,12 @@ Scene scene_of_triangles(const std::vector<std::array<Vec3, 3>>& triangles) {
 std::array<Vec3, 3> any_triangle(rational::Random& random, int kind) {
   std::array<Vec3, 3> out;
   for (Vec3& p : out) {
-    switch (kind) {
-      case 0:
-        p = random.cube(1);
-        break;
-      case 1:
-        p = random.scaled3(-60, 10);
-        break;
-      case 2:
-        p = random.cube(1) * 1.7e308;
-        break;
-      case 3:
-        p = random.cube(1) * 1e-318;
-        break;
-      case 4:
-        p = Vec3(1e9, -1e9, 1) + random.cube(1e-3);
-        break;
-      default:
-        p = random.cube(1) * (random.coin() ? 1e308 : 1e-320);
-    }
+    if (kind == 0) p = random.cube(1);
+    if (kind == 1) p = random.scaled3(-60, 10);
+    if (kind == 2) p = random.cube(1) * 1.7e308;
+    if (kind == 3) p = random.cube(1) * 1e-318;
+    if (kind == 4) p = Vec3(1e9, -1e9, 1) + random.cube(1e-3);
+    if (kind == 5) p = random.cube(1) * (random.coin() ? 1e308 : 1e-320);
   }
   return out;
 }

@@ -5,23 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/frames.h"
-#include "experiments/record/output.h"
-#include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
-#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
-#include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "tests/lab/certificates.h"
-#include "tests/lab/test.h"
 #include "verify/certificate/pair_list.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
-/// The command's status and what it printed.
 struct ProgramAnswer {
   int status = -1;
   std::string text;
@@ -222,7 +213,6 @@ TEST_F(CheckFrames, EachIsProved) {
   EXPECT_EQ(error_of([&] { check(with_list); }).where, pairs);
 }
 
-// The certificate of one frame proves nothing of another one.
 TEST_F(CheckFrames, OfAnotherFrameIsNotProved) {
   const std::string of_4 = read_file(numbered(pattern, 4), 1 << 24);
   folder.write("c_005.json", of_4);

@@ -70,12 +70,8 @@ nested.json << {"objects":; [{"mesh": "face.obj"}]}
 bad scene file with a bad mesh | .*face\.obj:5: | run nested.json {outputs}
 gone.json << {"objects":; [{"mesh": "good.obj"}, {"mesh": "gone.obj"}]}
 bad scene file with a missing mesh | gone\.obj: the file does not exist; .*: objects\[1\]\.mesh in line 2 of gone\.json names this one$ | run gone.json {outputs}
-solid.obj << solid a; facet normal 0 0 1
-bad STL named .obj | solid\.obj: looks like a \.stl file, not OBJ; rename it$ | run solid.obj {outputs}
 $ cat good.obj good.obj > good.stl
 bad OBJ named .stl | good\.stl: is text that does not begin with 'solid', not STL; rename it$ | run good.stl {outputs}
-nan.obj << v 0 0 0; v nan 0 0; v 1 0 0; f 1 2 3
-bad NaN | nan\.obj:2: vertex 2 .counted from 1. is not finite, and face 1 uses it | run nan.obj {outputs}
 """, outputs=' '.join(OUTPUTS))
 
 # Good files (gzip_test.cpp loads those of every format); an older file that is replaced, a link that stays a link.

@@ -114,7 +114,7 @@ bad {software0} without a driver | EGL: | GALLIUM_DRIVER=nonsense {*software} --
 bad {software0} with OpenGL 3.3 | EGL: .*older than 4\.3
   | MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 {*software} --device software
 # What draws nothing needs no device.
-0 far apart without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run far-apart
+0 far apart without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run far-apart --method far --device gl | nothing left to draw
 0 exact without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run two-spheres --method exact
 # What draws does so on the cores of the CPU where no device was asked for, and says why.
 0 far without EGL | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent verify {native} --json -

@@ -3,13 +3,9 @@
 
 #include <regex>
 
-#include "core/base/stage.h"
 #include "experiments/measure/bench.h"
 #include "experiments/measure/frames.h"
-#include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/record/tables.h"
-#include "experiments/scenes/scene_file.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

@@ -1,9 +1,7 @@
 // What the library says of contacts, and what it leaves out when it is told to: ignored objects,
 // and pairs beyond a limit. Each is held against the answer without that option.
-#include <cfenv>
 
 #include "core/base/random.h"
-#include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/flat.h"
 #include "verify/contact.h"
@@ -70,7 +68,6 @@ TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
   expect(found.neighbour_pairs, found.neighbour_contacts);
 }
 
-/// The pairs whose objects are not these two.
 std::vector<Pair> without(const Scene& scene, std::vector<Pair> pairs,
                           const std::vector<std::array<std::uint32_t, 2>>& ignored) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -105,6 +102,10 @@ TEST(LibraryIgnore, RefusesObjectsThatThereAreNot) {
   EXPECT_EQ(refused({{0, 1}}), "nothing was thrown: nothing was thrown");
   EXPECT_EQ(refused({{0, 4}}), "ignore: names objects 0 and 4 of 4, numbered from 0");
   EXPECT_EQ(refused({{2, 2}}), "ignore: names objects 2 and 2, which are one");
+  // All are ignored, so 0 pairs would say nothing; with `self` there is a question.
+  const Options all{.ignore = {{0, 1}, {0, 2}, {3, 0}, {1, 2}, {1, 3}, {2, 3}}};
+  EXPECT_EQ(refusal([&] { collide(kFour, all); })[0], "ignore");
+  EXPECT_NO_THROW(collide(kFour, {.self = true, .ignore = all.ignore}));
 }
 
 }  // namespace

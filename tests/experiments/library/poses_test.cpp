@@ -1,8 +1,5 @@
 // Objects that poses move, calls that may be ended, and matrices of Eigen as input. Each answer is
 // held against that of plain arrays.
-#include <algorithm>
-#include <array>
-#include <functional>
 
 #include "core/base/random.h"
 #include "experiments/library/distance.h"
@@ -164,17 +161,10 @@ TEST(LibraryPoses, AloneAreAsFresh) {
     for (Pose& pose : poses)
       if (random.below(8) > 0) pose = pose_by(random, kind);
     Input input;
-    switch (random.below(12)) {
-      case 0:  // other arrays
-        for (double& x : flat->vertices) x += 0.001 * random.between(-1, 1);
-        input = flat->input();
-        break;
-      case 1:  // the same arrays again
-        input = flat->input();
-        break;
-      default:
-        break;
-    }
+    const int arrays = random.below(12);  // 0: others, 1: the same again, else poses alone
+    if (arrays == 0)
+      for (double& x : flat->vertices) x += 0.001 * random.between(-1, 1);
+    if (arrays <= 1) input = flat->input();
     if (input.vertices.empty() || random.below(2) == 0) input.poses = poses;
     Input whole = flat->input();
     whole.poses = input.poses;

@@ -5,7 +5,6 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
 #include "tests/lab/pairs.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {

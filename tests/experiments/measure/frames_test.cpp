@@ -1,12 +1,7 @@
 #include "experiments/measure/frames.h"
 
-#include <sys/resource.h>
-
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
-#include "experiments/scenes/scene_file.h"
-#include "experiments/system/output_file.h"
-#include "tests/lab/test.h"
+#include "tests/lab/process.h"
 
 namespace farcull {
 namespace {
@@ -108,7 +103,7 @@ TEST(Frames, MissingFilesAndScenesThatStandStillAreNamed) {
   EXPECT_EQ(error_of([&] { FrameSource({"two-tori"}, {0, 2}, false); }).where, "--frames");
 }
 
-// What a frame gave is there when the next one begins, as a whole document.
+// When a frame begins, the file holds the frames before it, as a whole document.
 TEST(Frames, ARecordIsWholeAfterEachFrame) {
   const ScratchFolder folder;
   const std::string path = folder.write("record.json", "of an earlier run");
@@ -139,7 +134,6 @@ TEST(Frames, ARecordIsWholeAfterEachFrame) {
   EXPECT_EQ(whole.json["frames"].size(), 5u);
 }
 
-// A file that may not grow any more holds what it held.
 TEST(GrowingOutput, AFullDiskLeavesWhatWasWhole) {
   const ScratchFolder folder;
   const std::string path = folder.path("growing");
@@ -149,14 +143,12 @@ TEST(GrowingOutput, AFullDiskLeavesWhatWasWhole) {
   output.add(",2", " ] ");
   output.add(",3", "]");
   EXPECT_EQ(read_text(path), "[1,2,3]");
-  rlimit before = {};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit full = {.rlim_cur = 100, .rlim_max = before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
   const std::string long_text = "," + std::string(200, '4');
-  EXPECT_EQ(error_of([&] { output.add(long_text, "]"); }).where, path);
+  {
+    const FileSizeLimit limit(100);
+    EXPECT_EQ(error_of([&] { output.add(long_text, "]"); }).where, path);
+  }
   EXPECT_EQ(read_text(path), "[1,2,3]");
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   output.add(long_text, "]");
   output.finish();
   EXPECT_EQ(read_text(path), "[1,2,3" + long_text + "]");

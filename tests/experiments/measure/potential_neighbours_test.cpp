@@ -19,7 +19,7 @@ std::set<std::uint32_t> others_of(const std::vector<ObjectPair>& pairs, std::uin
   return out;
 }
 
-// The set of each object is what its own definition says.
+// Compares the set of each object with its definition.
 void check(const Scene& scene, const NeighbourOptions& options) {
   const NeighbourSets sets = neighbour_sets(scene, options);
   const std::vector<SetSize> sizes = set_sizes(scene, sets);
@@ -62,7 +62,6 @@ TEST(NeighbourSets, AreWhatTheDiagramLeaves) {
   }
 }
 
-// Nearest objects that are lost in all scenes.
 std::uint64_t lost_by(const NeighbourOptions& options, int scenes) {
   std::uint64_t out = 0;
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(scenes)); ++seed) {

@@ -73,7 +73,8 @@ TEST(AskedPairs, WhatASceneIgnoresIsIgnoredAsWhatTheOptionsIgnore) {
   Scene unsorted = whole;
   unsorted.ignored = {{2, 5}, {0, 1}};
   EXPECT_THROW(validate(unsorted, "here"), Error);
-  // The empty list lacks pairs of the scene with what it ignores; of nothing ignored it lacks more.
+  // An empty list lacks the pairs that the scene does not ignore. If nothing is ignored it lacks
+  // more.
   const GivenList list{.name = "list", .has_frames = false, .rows = {}, .not_looked_at = {}};
   const auto lacking = [&](const Scene& asked) {
     const SceneCheck check = check_scene_with(0, "", {}, asked, &list, {});

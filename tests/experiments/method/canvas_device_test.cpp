@@ -1,9 +1,8 @@
-// Which canvas draws, by --device and without one, and that the native canvas says what it is. That
-// GL is drawn with where it is asked for: gl_methods_test.cpp.
+// Which canvas draws, with --device and without it, and what the native canvas says of itself.
+// gl_methods_test.cpp tests that GL draws where it is named.
 #include <nlohmann/json.hpp>
 
 #include "core/native/canvas.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"

@@ -7,10 +7,8 @@
 #include <CGAL/boost/graph/graph_traits_Polyhedron_3.h>
 
 #include <Eigen/Geometry>
-#include <numeric>
 
 #include "tests/lab/assembly.h"
-#include "verify/inside.h"
 
 namespace farcull {
 namespace {

@@ -3,7 +3,6 @@
 #include "experiments/method/clash.h"
 
 #include <Eigen/Geometry>
-#include <set>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/assembly.h"
@@ -54,7 +53,6 @@ TEST(Clash, OfAnAssemblyIsKnown) {
   // A bolt of 4 x 4 crosses two faces of a plate, in 16 each.
   EXPECT_NEAR(row_of(record, 0, 2).curve, 32, 1e-9);
   EXPECT_EQ(row_of(record, 18, 19).inner, 19u);
-  // The most serious first.
   for (std::size_t k = 1; k < record.rows.size(); ++k)
     EXPECT_LE(record.rows[k - 1].verdict, record.rows[k].verdict);
   // The twins: the clearance decides about the gap of 2, and the last gap is beyond it.

@@ -1,7 +1,6 @@
 // Parts that touch but for rounding, and the tolerance that calls them so. Twins overlap or are
 // apart by more than the tolerance.
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "experiments/method/clash.h"
 #include "tests/lab/parts.h"

@@ -2,12 +2,7 @@
 // the file is damaged, foreign or about something else. No device is opened here.
 #include "experiments/method/device_verdict.h"
 
-#include <sys/resource.h>
-
-#include <csignal>
-
-#include "core/gl/probe/probe.h"
-#include "tests/lab/test.h"
+#include "tests/lab/process.h"
 
 namespace farcull {
 namespace {
@@ -33,6 +28,9 @@ ProbeResult probe(const std::string& assumption, bool pass) {
           .pass = pass,
           .note = "tried"};
 }
+
+const ProbeResult kBrokenOff = {
+    .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
 
 // Asks for a verdict; counts how often the probes run, and keeps what was said.
 struct Asked {
@@ -71,6 +69,8 @@ TEST(DeviceVerdict, IsMadeOnceAndKept) {
   EXPECT_EQ(to_string(again), found + ", remembered)");
   EXPECT_EQ(ask.runs, 1);
   EXPECT_EQ(ask.said.size(), 1u);
+  const std::filesystem::directory_iterator files(folder.path("farcull"));
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "nothing is left beside the verdict";
 }
 
 TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
@@ -92,8 +92,7 @@ TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
 TEST(DeviceVerdict, ABrokenOffProbePromisesNothingAndIsNotKept) {
   const CacheFolder folder;
   Asked ask;
-  ask.results[1] = {
-      .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
+  ask.results[1] = kBrokenOff;
   const DeviceVerdict verdict = ask(device());
   EXPECT_FALSE(verdict.holds);
   EXPECT_EQ(verdict.problem, "A4 x: no memory");
@@ -130,16 +129,14 @@ TEST(DeviceVerdict, DependsOnDeviceDriverAndEnvironment) {
   GlInfo other = device();
   other.subpixel_bits = 4;
   EXPECT_TRUE(remade(other));
-  ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 1);
-  EXPECT_TRUE(remade(device()));
-  ::unsetenv("LP_NATIVE_VECTOR_WIDTH");
-  ::setenv("lower_depth_range_rate", "0.5", 1);  // an option of driconf
-  EXPECT_TRUE(remade(device()));
-  ::unsetenv("lower_depth_range_rate");
+  for (const char* name :
+       {"LP_NATIVE_VECTOR_WIDTH", "lower_depth_range_rate"}) {  // Mesa's, driconf's
+    const SetVariable set(name, "0.5");
+    EXPECT_TRUE(remade(device()));
+  }
   // Other variables change nothing, and the first verdict is still there.
-  ::setenv("no_proxy", "localhost", 1);
+  const SetVariable set("no_proxy", "localhost");
   EXPECT_TRUE(ask(device()).remembered);
-  ::unsetenv("no_proxy");
   EXPECT_EQ(ask.runs, runs);
 }
 
@@ -236,9 +233,6 @@ TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
   EXPECT_EQ(ask.runs, 1);
 }
 
-const ProbeResult kBrokenOff = {
-    .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
-
 // A later run of the probes that does not pass leaves nothing of an older promise, whatever becomes
 // of its own verdict. The twin: one that passes leaves it in place where it cannot be written.
 TEST(DeviceVerdict, NoOlderPromiseOutlivesProbesThatBreakOff) {
@@ -267,26 +261,6 @@ TEST(DeviceVerdict, AFailureIsKeptThoughAnotherProbeBrokeOff) {
   EXPECT_EQ(ask.runs, 1);
 }
 
-// No file of this process takes a byte for its lifetime, as on a full disk.
-class FullDisk {
- public:
-  FullDisk() : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit none{0, old_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &none);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, signal_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  void (*signal_)(int);
-  rlimit old_{};
-};
-
 TEST(DeviceVerdict, NoOlderPromiseOutlivesAFailureThatCannotBeWritten) {
   for (const bool pass : {false, true}) {
     const CacheFolder folder;
@@ -294,24 +268,13 @@ TEST(DeviceVerdict, NoOlderPromiseOutlivesAFailureThatCannotBeWritten) {
     ask(device());
     DeviceVerdict full;
     {
-      const FullDisk disk;
+      const FileSizeLimit full_disk(0);
       full = keep_verdict(device(), {probe("A2", pass)}, 5);
     }
     EXPECT_TRUE(full.file.empty());
     EXPECT_FALSE(full.note.empty());
     EXPECT_EQ(ask(device()).remembered, pass);
   }
-}
-
-TEST(DeviceVerdict, NothingIsLeftBeside) {
-  const CacheFolder folder;
-  Asked ask;
-  ask(device());
-  std::size_t files = 0;
-  for ([[maybe_unused]] const auto& entry :
-       std::filesystem::directory_iterator(folder.path("farcull")))
-    ++files;
-  EXPECT_EQ(files, 1u);
 }
 
 }  // namespace

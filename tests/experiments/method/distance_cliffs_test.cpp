@@ -2,9 +2,6 @@
 // within the distance. The work is counted. Each count has a twin that exceeds it.
 #include "experiments/method/distances.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "tests/experiments/method/distance_truth.h"
 #include "tests/lab/test.h"
 
@@ -42,8 +39,8 @@ TEST(DistanceCliffsTwin, ObjectsOfOnePartAreAllCompared) {
   EXPECT_GT(pairs_for_nearest(far_triangles(200, true)), 8u * 200u);
 }
 
-// Slivers side by side along the diagonal of one box, which nearly contains each of them, in
-// another order. Each is an object, with so many copies of it.
+// Slivers beside each other along the diagonal of one box, in any order. The box of each is nearly
+// the whole. Each sliver is an object, with `copies` copies of it.
 Scene slivers(int count, int copies) {
   std::vector<std::vector<CliffTriangle>> objects;
   for (int k = 0; k < count; ++k) {

@@ -8,8 +8,6 @@
 #include "tests/lab/flat.h"
 #include "tests/lab/floating_point.h"
 #include "tests/lab/unwrapped.h"
-#include "verify/certificate/certificate.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -46,7 +44,8 @@ void for_all(const Test& test) {
   }
 }
 
-// The calls below with the guard left out: each scene is answered wrongly where it is meant to be.
+// Without the guard the calls below are wrong about each scene, in the environments that it is made
+// for.
 TEST(FloatingPointAnswers, TwinsWithoutAGuardAreWrong) {
   const auto wrong_in = [](const Scene& scene) {
     const auto a = scene.corners(0), b = scene.corners(1);

@@ -3,11 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/method/plan.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
-#include "experiments/record/stage_words.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/plan.h"
 #include "tests/lab/scenes.h"
 
@@ -38,8 +35,8 @@ Scene scene_for(const std::string& name, Method method) {
   return scene;
 }
 
-// That GL is drawn with where it is named, even a software renderer, and that its pairs are those
-// of the native canvas where FAR promises. (Without a name: canvas_device_test.cpp.)
+// GL draws where it is named, even if it is a software renderer, and finds the pairs of the native
+// canvas where FAR promises. canvas_device_test.cpp has runs that name no device.
 TEST(GlMethods, AreDrawnOnGlWhereItIsNamed) {
   const Scene scene = make_builtin_scene("crowd");
   Session native("native");

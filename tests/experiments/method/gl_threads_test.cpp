@@ -4,7 +4,6 @@
 
 #include "core/gl/base/context.h"
 #include "core/gl/probe/probe.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"

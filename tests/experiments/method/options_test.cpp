@@ -3,9 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/view/view.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"

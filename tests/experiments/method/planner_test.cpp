@@ -3,14 +3,11 @@
 #include "experiments/method/plan.h"
 #include "experiments/record/output.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"
-#include "experiments/record/stage_words.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/plan.h"
 #include "tests/lab/runs.h"
 #include "tests/lab/scenes.h"

@@ -1,5 +1,4 @@
 // The method boxes as farcull run has it.
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/compare.h"

@@ -1,52 +1,39 @@
 // Which of two objects lies inside the other.
 #include "experiments/method/distances.h"
 
-#include "tests/lab/test.h"
+#include "tests/lab/parts.h"
 
 namespace farcull {
 namespace {
 
-/// A box as 12 triangles; without its lid where `open`.
-void add_box(Scene& scene, const Vec3& middle, double half, bool open = false) {
-  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  for (int k = 0; k < 8; ++k)
-    scene.vertices.push_back(middle + half * Vec3((k & 1) * 2 - 1, (k & 2) - 1, (k & 4) / 2 - 1));
-  for (const auto& [a, b, c, d] :
-       {std::array{0u, 1u, 3u, 2u}, std::array{4u, 5u, 7u, 6u}, std::array{0u, 1u, 5u, 4u},
-        std::array{2u, 3u, 7u, 6u}, std::array{0u, 2u, 6u, 4u}, std::array{1u, 3u, 7u, 5u}}) {
-    scene.triangles.push_back({first + a, first + b, first + c});
-    if (!open || a != 1) scene.triangles.push_back({first + a, first + c, first + d});
-  }
-}
+using lab::Parts;
 
-/// What was added since the last object is one.
-void end_object(Scene& scene) {
-  std::uint32_t first = 0;
-  if (!scene.objects.empty())
-    first = scene.objects.back().first_triangle + scene.objects.back().triangle_count;
-  const auto count = static_cast<std::uint32_t>(scene.triangles.size()) - first;
-  scene.objects.push_back({.name = "", .first_triangle = first, .triangle_count = count});
-  scene.source_face.resize(scene.triangles.size());
+/// A cube whose sides are twice `half` long; without its lid where `open`. Two of its sides face
+/// inward, so that parity decides.
+void add_box(Parts& parts, const Vec3& middle, double half, bool open = false) {
+  const Vec3 h = Vec3::Constant(half);
+  parts.box(middle - h, middle + h, false, open);
+  for (auto& t : std::span(parts.scene.triangles).last(4)) std::swap(t[0], t[1]);
 }
 
 TEST(WhichInside, IsWhereAllPartsAre) {
-  Scene scene;
-  add_box(scene, {0, 0, 0}, 10);
-  end_object(scene);  // 0: a large box
-  add_box(scene, {1, 2, 3}, 1);
-  end_object(scene);  // 1: inside it
-  add_box(scene, {1, 2, 3}, 0.5);
-  add_box(scene, {-5, -5, -5}, 1);
-  end_object(scene);  // 2: two parts inside 0, one of them inside 1
-  add_box(scene, {1, 2, 3}, 0.5);
-  add_box(scene, {50, 0, 0}, 1);
-  end_object(scene);  // 3: a part inside 0, the other not
-  add_box(scene, {0, 0, 0}, 20);
-  add_box(scene, {0, 0, 0}, 15);
-  end_object(scene);  // 4: a shell around 0, which lies in its hollow
-  add_box(scene, {0, 0, 0}, 30, true);
-  end_object(scene);  // 5: open
-  const Insides insides(scene);
+  Parts parts;
+  add_box(parts, {0, 0, 0}, 10);
+  parts.end("");  // 0: a large box
+  add_box(parts, {1, 2, 3}, 1);
+  parts.end("");  // 1: inside it
+  add_box(parts, {1, 2, 3}, 0.5);
+  add_box(parts, {-5, -5, -5}, 1);
+  parts.end("");  // 2: two parts inside 0, one of them inside 1
+  add_box(parts, {1, 2, 3}, 0.5);
+  add_box(parts, {50, 0, 0}, 1);
+  parts.end("");  // 3: a part inside 0, the other not
+  add_box(parts, {0, 0, 0}, 20);
+  add_box(parts, {0, 0, 0}, 15);
+  parts.end("");  // 4: a shell around 0, which lies in its hollow
+  add_box(parts, {0, 0, 0}, 30, true);
+  parts.end("");  // 5: open
+  const Insides insides(parts.scene);
   EXPECT_EQ(insides.which(0, 1), WhichInside::b);
   EXPECT_EQ(insides.which(1, 0), WhichInside::a);
   EXPECT_EQ(insides.which(0, 2), WhichInside::b);
@@ -61,44 +48,44 @@ TEST(WhichInside, IsWhereAllPartsAre) {
 
 // A part that is inside by its box alone: between two parts of the outer object.
 TEST(WhichInside, IsDecidedByParityNotByBoxes) {
-  Scene scene;
-  add_box(scene, {0, 0, 0}, 1);
-  add_box(scene, {10, 10, 10}, 1);
-  end_object(scene);
-  add_box(scene, {5, 5, 5}, 1);
-  end_object(scene);
-  add_box(scene, {0, 0, 0}, 0.5);
-  add_box(scene, {5, 5, 5}, 0.5);
-  end_object(scene);  // a part inside the first box, a part between the two
-  add_box(scene, {0, 0, 0}, 0.5);
-  add_box(scene, {10, 10, 10}, 0.5);
-  end_object(scene);  // a part inside either
-  EXPECT_EQ(Insides(scene).which(0, 1), WhichInside::none);
-  EXPECT_EQ(Insides(scene).which(0, 2), WhichInside::none);
-  EXPECT_EQ(Insides(scene).which(0, 3), WhichInside::b);
+  Parts parts;
+  add_box(parts, {0, 0, 0}, 1);
+  add_box(parts, {10, 10, 10}, 1);
+  parts.end("");
+  add_box(parts, {5, 5, 5}, 1);
+  parts.end("");
+  add_box(parts, {0, 0, 0}, 0.5);
+  add_box(parts, {5, 5, 5}, 0.5);
+  parts.end("");  // a part inside the first box, a part between the two
+  add_box(parts, {0, 0, 0}, 0.5);
+  add_box(parts, {10, 10, 10}, 0.5);
+  parts.end("");  // a part inside either
+  EXPECT_EQ(Insides(parts.scene).which(0, 1), WhichInside::none);
+  EXPECT_EQ(Insides(parts.scene).which(0, 2), WhichInside::none);
+  EXPECT_EQ(Insides(parts.scene).which(0, 3), WhichInside::b);
 }
 
 TEST(WhichInside, PartsAreHeldTogetherByPositions) {
   // The outer box twice: each edge has an even number of triangles, no point is inside.
-  Scene scene;
-  add_box(scene, {0, 0, 0}, 10);
-  add_box(scene, {0, 0, 0}, 10);
-  end_object(scene);
-  add_box(scene, {0, 0, 0}, 1);
-  end_object(scene);
-  EXPECT_EQ(Insides(scene).which(0, 1), WhichInside::none);
+  Parts parts;
+  add_box(parts, {0, 0, 0}, 10);
+  add_box(parts, {0, 0, 0}, 10);
+  parts.end("");
+  add_box(parts, {0, 0, 0}, 1);
+  parts.end("");
+  EXPECT_EQ(Insides(parts.scene).which(0, 1), WhichInside::none);
   // Every triangle with vertices of its own, zeros of either sign: one part all the same.
-  Scene soup;
+  Parts soup;
   add_box(soup, {5, 5, 5}, 5);
-  end_object(soup);
+  soup.end("");
   add_box(soup, {5, 5, 5}, 1);
-  end_object(soup);
-  Scene apart = soup;
+  soup.end("");
+  Scene apart = soup.scene;
   apart.vertices.clear();
   bool negative = false;
   for (auto& t : apart.triangles) {
     for (auto& v : t) {
-      Vec3 p = soup.vertices[v];
+      Vec3 p = soup.scene.vertices[v];
       negative = !negative;
       for (double& x : p) x = x == 0 && negative ? -0.0 : x;
       v = static_cast<std::uint32_t>(apart.vertices.size());

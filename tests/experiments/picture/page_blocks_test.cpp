@@ -2,7 +2,6 @@
 // written.
 #include "experiments/picture/picture.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/base/bytes.h"

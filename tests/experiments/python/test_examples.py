@@ -47,11 +47,6 @@ def cells():
     return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
 
 
-def printed(cell):
-    """What the notebook holds as the output of a cell."""
-    return "".join("".join(output.get("text", "")) for output in cell["outputs"])
-
-
 def run_cells(all_cells):
     """The number of the first cell that does not print what the notebook holds, or None."""
     names = {"__name__": "notebook"}
@@ -59,7 +54,7 @@ def run_cells(all_cells):
         out = io.StringIO()
         with contextlib.redirect_stdout(out):
             exec(compile(ast.parse("".join(cell["source"])), f"cell {number}", "exec"), names)
-        if out.getvalue() != printed(cell):
+        if out.getvalue() != "".join("".join(output.get("text", "")) for output in cell["outputs"]):
             return number, out.getvalue()
     return None
 
@@ -67,10 +62,7 @@ def run_cells(all_cells):
 def test_the_notebook_holds_what_its_cells_print():
     assert len(cells()) >= 4
     assert run_cells(cells()) is None
-
-
-def test_a_wrong_output_in_the_notebook_is_noticed():
-    changed = cells()
+    changed = cells()  # the twin
     changed[2]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": ["nothing\n"]}]
     assert run_cells(changed)[0] == 2
 

@@ -89,10 +89,6 @@ def quiet():
         yield
 
 
-def require_clear(error):
-    assert error.where and error.reason and error.remedy, repr(error)
-
-
 def rows(pairs):
     return [tuple(pair) for pair in np.asarray(pairs).reshape(-1, 2).tolist()]
 
@@ -130,7 +126,7 @@ def test_random_calls_answer_or_say_what_is_wrong():
         try:
             answer = call(**arguments)
         except farcull.InputError as error:
-            require_clear(error)
+            assert error.where and error.reason and error.remedy, repr(error)
             wheres.add(error.where)
             refused += 1
         except MemoryError:  # a view of no memory that claims to be large

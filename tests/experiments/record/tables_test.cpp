@@ -4,10 +4,7 @@
 #include "experiments/record/stage_words.h"
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "core/base/stage.h"
-#include "core/base/text.h"
 #include "experiments/record/output.h"
 #include "experiments/system/text_table.h"
 #include "tests/lab/scenes.h"

@@ -11,10 +11,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "experiments/studies/store.h"
-#include "experiments/studies/study.h"
 #include "tests/lab/points.h"
 
 namespace {

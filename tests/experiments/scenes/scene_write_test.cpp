@@ -3,8 +3,6 @@
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
-#include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/scene_file.h"
 #include "tests/lab/moving.h"
 
 namespace farcull {

@@ -2,8 +2,8 @@
 
 #include <rapidcheck.h>
 #include <sys/stat.h>
-#include <nlohmann/json.hpp>
 
+#include "tests/lab/process.h"
 #include "tests/lab/store.h"
 
 namespace farcull {
@@ -217,10 +217,8 @@ TEST(Versions, OfTheStudyAreThoseThatItsProgramsSay) {
   const Study study = study_named("libraries");
   const Point point = LibraryPoint{.contestant = "gts"};
   const auto said = [&](const std::string& folder) {
-    ::setenv("FARCULL_CONTESTANTS", folder.c_str(), 1);
-    std::string out = study.library(point);
-    ::unsetenv("FARCULL_CONTESTANTS");
-    return out;
+    const SetVariable set("FARCULL_CONTESTANTS", folder);
+    return study.library(point);
   };
   for (const char* version : {"GTS 0.7.5", "GTS 0.7.6"}) {
     const ScratchFolder folder;

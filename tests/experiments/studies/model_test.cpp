@@ -8,7 +8,6 @@
 
 #include "experiments/method/miss_model.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
 #include "verify/exact.h"

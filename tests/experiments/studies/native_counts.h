@@ -17,8 +17,6 @@
 #include <fstream>
 #include <map>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
@@ -101,7 +99,6 @@ inline std::string measured_row(const Study& study, const Point& point, const st
   return row_of(study, key, result.counts);
 }
 
-/// The hash of rows in any order.
 struct RowsHash {
   std::uint64_t rows = 0, sum = 0;
   void add(const std::string& row) {

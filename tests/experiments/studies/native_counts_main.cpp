@@ -7,7 +7,6 @@
 //     --threads LIST     numbers of threads, by commas; 0: as many as there are cores; default 0
 // Exit status: 0; 1 counts differ; 2 they could not be measured.
 #include "core/base/text.h"
-#include "core/native/canvas.h"
 #include "tests/experiments/studies/native_counts.h"
 
 namespace farcull::native_counts {

@@ -2,9 +2,6 @@
 // of shards are those of one run.
 #include "experiments/studies/run_point.h"
 
-#include <nlohmann/json.hpp>
-
-#include "experiments/studies/run_studies.h"
 #include "tests/lab/store.h"
 
 namespace farcull {

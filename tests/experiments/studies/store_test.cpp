@@ -1,12 +1,9 @@
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 
-#include <csignal>
-#include <nlohmann/json.hpp>
-
+#include "tests/lab/process.h"
 #include "tests/lab/store.h"
 
 namespace farcull {
@@ -217,29 +214,6 @@ TEST(RunStudies, TheComparisonOfStoresSeesARowThatDiffers) {
   EXPECT_EQ(difference(store_path(one.folder()), store_path(three.folder())),
             "counting: 20 rows and 19");
 }
-
-// As large as files may grow; SIGXFSZ is ignored meanwhile, so that writing fails as on a full
-// disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_ = {};
-  void (*handler_)(int) = nullptr;
-};
 
 TEST(RunStudies, GoesOnAfterADiskThatWasFull) {
   const ScratchFolder undisturbed, full;

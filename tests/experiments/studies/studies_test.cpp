@@ -2,9 +2,7 @@
 #include "experiments/record/stage_words.h"
 #include "experiments/studies/study.h"
 
-#include "experiments/measure/harness.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"

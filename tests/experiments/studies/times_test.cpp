@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <nlohmann/json.hpp>
 
 #include "tests/lab/store.h"
 

@@ -66,7 +66,6 @@ TEST(Loads, AreFoundWithAllTheContactsThatTheyPromise) {
   EXPECT_GT(most, 65535u);  // what 16 bits can count
 }
 
-/// The frames of each motion.
 std::vector<std::vector<SuiteMesh>> motions() {
   std::vector<std::vector<SuiteMesh>> out;
   for (const MeshFamily& family : mesh_families()) {

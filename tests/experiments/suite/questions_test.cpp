@@ -1,29 +1,20 @@
 // Questions of a suite beyond pairs, and their labels.
 #include "experiments/suite/questions.h"
 
-#include "tests/lab/test.h"
+#include "tests/lab/parts.h"
 
 namespace farcull {
 namespace {
 
 /// Two cubes with sides of length 1, the second one moved by `by` along each axis.
 SuiteMesh two_cubes(double by) {
+  lab::Parts cubes;
+  for (const int o : {0, 1})
+    cubes.add_box(std::to_string(o), Vec3::Constant(o * by), Vec3::Constant(o * by + 1));
   SuiteMesh out;
   out.name = "cubes-1";
   out.family = "cubes";
-  for (std::uint32_t o = 0; o < 2; ++o) {
-    out.scene.objects.push_back(
-        {.name = std::to_string(o), .first_triangle = 12 * o, .triangle_count = 12});
-    for (int i = 0; i < 8; ++i)
-      out.scene.vertices.push_back(Vec3(i % 2, i / 2 % 2, i / 4) + Vec3::Constant(o * by));
-    for (const char* face :
-         {"021", "123", "456", "576", "014", "154", "263", "367", "042", "246", "135", "375"}) {
-      std::array<std::uint32_t, 3> corners{};
-      for (int k = 0; k < 3; ++k) corners[k] = 8 * o + static_cast<std::uint32_t>(face[k] - '0');
-      out.scene.triangles.push_back(corners);
-      out.scene.source_face.push_back(0);
-    }
-  }
+  out.scene = cubes.scene;
   return out;
 }
 

@@ -1,11 +1,9 @@
 // The small suite as a whole: its checksum, its kinds, and our own answers to all of it.
 #include "experiments/suite/writer.h"
 
-#include "experiments/generators/pair_generators.h"
 #include "experiments/method/run.h"
 #include "tests/lab/flat.h"
 #include "verify/contact.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -82,7 +80,6 @@ Scene scene_of(const SuitePair& pair) {
   return scene;
 }
 
-/// Whether the library reports the pair.
 bool found_by_library(Collider& collider, const Scene& scene) {
   const Result result = collider.find(Flat(scene).input());
   return result.pairs.size() + result.neighbour_pairs.size() > 0;
@@ -106,7 +103,6 @@ TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
   }
 }
 
-/// The device of methods that draw.
 std::string asked_device() { return environment("FARCULL_SUITE_DEVICE", "native"); }
 
 /// Whether the method reports the pair; everything is left in, so that it is drawn.

@@ -1,12 +1,11 @@
 // What is merged is the list of one run; whatever is missing, doubled, foreign or cut short is
 // refused, and then no file is written.
 
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/bytes.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/tiles/run_tile.h"
 #include "tests/lab/test.h"
 
@@ -20,19 +19,13 @@ constexpr std::size_t kTiles = 3;
 
 class MergeTiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("farcull-tiles-" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directory(folder_);
+  MergeTiles() {
     for (std::size_t k = 1; k <= kTiles; ++k) run(k, kTiles, "field:9000");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
-  std::string record(std::size_t k) const {
-    return (folder_ / ("t" + std::to_string(k) + ".json")).string();
-  }
-  fs::path list(std::size_t k) const { return folder_ / ("t" + std::to_string(k) + ".csv"); }
-  std::string out() const { return (folder_ / "all.csv").string(); }
+  std::string record(std::size_t k) const { return folder_.path(fmt::format("t{}.json", k)); }
+  fs::path list(std::size_t k) const { return folder_.path(fmt::format("t{}.csv", k)); }
+  std::string out() const { return folder_.path("all.csv"); }
 
   void run(std::size_t k, std::size_t n, const std::string& scene, double clearance = 0) {
     TileQuestion question{.options = {.device = "native", .clearance = clearance},
@@ -54,7 +47,7 @@ class MergeTiles : public testing::Test {
   // The reason for which the records are refused; nothing is left in the folder then.
   std::string refusal(const std::vector<std::string>& records) {
     const auto files = [&] {
-      return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+      return std::distance(fs::directory_iterator(folder_.folder()), fs::directory_iterator());
     };
     const auto before = files();
     try {
@@ -69,7 +62,7 @@ class MergeTiles : public testing::Test {
   std::string refusal() { return refusal({record(1), record(2), record(3)}); }
   void expect_refused(const std::string& reason) { EXPECT_TRUE(has_text(refusal(), reason)); }
 
-  fs::path folder_;
+  const ScratchFolder folder_;
   Session session_{"native"};
 };
 

@@ -4,8 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/random.h"
-#include "experiments/record/output.h"
-#include "experiments/scenes/scene_file.h"
 #include "tests/lab/test.h"
 
 namespace farcull {
@@ -58,7 +56,6 @@ SceneSource source_of(const Scene& scene) {
   };
 }
 
-/// The four numbers at the beginning of a row.
 std::array<std::uint64_t, 4> key_of(const std::string& row) {
   std::array<std::uint64_t, 4> key{};
   std::istringstream in(row);
@@ -67,7 +64,6 @@ std::array<std::uint64_t, 4> key_of(const std::string& row) {
   return key;
 }
 
-/// Several lists with one header as one, in order.
 std::string joined(const std::vector<std::string>& lists) {
   std::vector<std::string> rows;
   std::string header;
@@ -180,7 +176,8 @@ TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
   const auto flip = [](Scene& now) { now.objects[0].self = !now.objects[0].self; };
   EXPECT_THROW(run_tile(changing(flip), question, session), Error);
   EXPECT_NO_THROW(run_tile(changing([](Scene&) {}), question, session));
-  // No census tells this; the hash does, so the records of the tiles do not fit together.
+  // The counts are the same, but the hash is another, so the records of the tiles do not fit
+  // together.
   const auto move = [](Scene& now) { now.vertices[now.triangles[0][0]].x() += 1; };
   EXPECT_NE(run_tile(changing(move), question, session).part.hash, hash);
 }
@@ -367,33 +364,25 @@ TEST(Tiles, EachPairBelongsToOneTile) {
   EXPECT_EQ(faults.repeated, 0);
 }
 
-TEST(Tiles, ATriangleThatEndsOnTheCutMustNotBeDropped) {
-  const Faults faults =
-      faults_of({.meets = [](const Tile& tile, double lo, double hi, double clearance) {
-        return lo < tile.to && tile.from - hi < clearance;
-      }});
-  EXPECT_GT(faults.lost, 0);
-}
-
-TEST(Tiles, ATriangleThatEndsWithinTheClearanceOfTheCutMustNotBeDropped) {
-  const Faults faults = faults_of({.meets = [](const Tile& tile, double lo, double hi, double) {
-    return lo < tile.to && hi >= tile.from;
-  }});
-  EXPECT_GT(faults.lost, 0);
-}
-
-TEST(Tiles, TilesMustNotHoldBothEnds) {
-  const Faults faults = faults_of(
+TEST(TilesTwin, OfOtherDefinitionsPairsAreLostOrRepeated) {
+  const auto lost = [](const Rules& rules) { return faults_of(rules).lost; };
+  // A triangle that ends on the cut is dropped; or one that ends within the clearance of it.
+  EXPECT_GT(
+      lost({.meets = [](const Tile& tile, double lo, double hi,
+                        double clearance) { return lo < tile.to && tile.from - hi < clearance; }}),
+      0);
+  EXPECT_GT(lost({.meets = [](const Tile& tile, double lo, double hi,
+                              double) { return lo < tile.to && hi >= tile.from; }}),
+            0);
+  // A pair has its place where the earlier of its boxes begins.
+  EXPECT_GT(lost({.place = [](double a, double b) { return std::min(a, b); }}), 0);
+  // Tiles hold both of their ends.
+  const Faults both = faults_of(
       {.meets = [](const Tile& tile, double lo, double hi,
                    double clearance) { return lo <= tile.to && tile.from - hi <= clearance; },
        .holds = [](const Tile& tile, double at) { return at >= tile.from && at <= tile.to; }});
-  EXPECT_EQ(faults.lost, 0);
-  EXPECT_GT(faults.repeated, 0);
-}
-
-TEST(Tiles, ThePlaceOfAPairIsTheLaterBeginning) {
-  const Faults faults = faults_of({.place = [](double a, double b) { return std::min(a, b); }});
-  EXPECT_GT(faults.lost, 0);
+  EXPECT_EQ(both.lost, 0);
+  EXPECT_GT(both.repeated, 0);
 }
 
 TEST(Tiles, TheFirstAndTheLastTileHaveNoEnd) {

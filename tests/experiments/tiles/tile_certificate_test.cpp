@@ -3,7 +3,6 @@
 #include "experiments/record/output.h"
 #include "experiments/tiles/run_tile.h"
 #include "tests/lab/certificates.h"
-#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

@@ -1,12 +1,11 @@
 // Certificates for a clearance: distances decided in integers, a distance of exactly the clearance
 // counts, and one unit in the last place more or less does not go unseen.
-#include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
 #include "tests/lab/drawn_pairs.h"
+#include "tests/lab/hard_pairs.h"
 #include "tests/lab/reference.h"
 #include "verify/certificate/pair_list.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -45,61 +44,8 @@ TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
   }
 }
 
-/// Two triangles at a distance that is a double, closest in one feature of each alone.
-struct Feature {
-  const char* name;
-  Triangle a, b;
-  double distance;
-};
-
-const std::vector<Feature>& features() {
-  static const std::vector<Feature> list = {
-      {"corner and corner",
-       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 0)},
-       {Vec3(3, 4, 0), Vec3(9, 5, 1), Vec3(9, 7, -1)},
-       5},
-      {"corner and edge",
-       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 1)},
-       {Vec3(3, -2, 0), Vec3(3, 5, 0), Vec3(9, 0, 0)},
-       3},
-      {"edge and corner",
-       {Vec3(3, -2, 0), Vec3(3, 5, 0), Vec3(9, 0, 0)},
-       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 1)},
-       3},
-      {"corner and face",
-       {Vec3(1, 1, 7), Vec3(0, 1, 9), Vec3(1, 2, 9)},
-       {Vec3(-3, -3, 0), Vec3(9, -3, 0), Vec3(-3, 9, 0)},
-       7},
-      {"face and corner",
-       {Vec3(-3, -3, 0), Vec3(9, -3, 0), Vec3(-3, 9, 0)},
-       {Vec3(1, 1, 7), Vec3(0, 1, 9), Vec3(1, 2, 9)},
-       7},
-      {"edge and edge",
-       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -4)},
-       {Vec3(0, -3, 2), Vec3(0, 4, 2), Vec3(0, 0, 6)},
-       2},
-      {"parallel edges",
-       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -4)},
-       {Vec3(1, 0, 2), Vec3(9, 0, 2), Vec3(2, 0, 6)},
-       2},
-      {"parallel faces",
-       {Vec3(0, 0, 0), Vec3(5, 0, 0), Vec3(0, 5, 0)},
-       {Vec3(1, 1, 2), Vec3(6, 1, 2), Vec3(1, 6, 2)},
-       2},
-      {"points",
-       {Vec3(1, 2, 2), Vec3(1, 2, 2), Vec3(1, 2, 2)},
-       {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)},
-       3},
-      {"segments",
-       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(1, 0, 0)},
-       {Vec3(0, -3, 2), Vec3(0, 4, 2), Vec3(0, 1, 2)},
-       2},
-  };
-  return list;
-}
-
 TEST(IntegerClearance, ADistanceOfExactlyTheClearanceIsWithin) {
-  for (const Feature& f : features()) {
+  for (const hard_pairs::KnownDistance& f : hard_pairs::known_distances()) {
     SCOPED_TRACE(f.name);
     // A turn by multiples of 3-4-5 and a shift, both exact, so that no coordinate is special.
     const auto turned = [](const Triangle& t) {
@@ -186,7 +132,7 @@ TEST(CertificateClearance, ProvesWhatTheReferenceFinds) {
 // The twin: the certificate for another clearance, one unit in the last place away, at which the
 // answer about some pair is another.
 TEST(CertificateClearance, OneUnitInTheLastPlaceIsRefuted) {
-  for (const Feature& f : features()) {
+  for (const hard_pairs::KnownDistance& f : hard_pairs::known_distances()) {
     SCOPED_TRACE(f.name);
     const Scene scene = reference::scene_of({{f.a}, {f.b}});
     const auto of = [&](double clearance) { return Case(scene, clearance); };

@@ -1,16 +1,12 @@
 // Certificates of right results check; forged ones do not.
 #include "verify/certificate/certificate.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
 #include "tests/lab/reference.h"
-#include "verify/certificate/box_pairs.h"
-#include "verify/certificate/integer_pair.h"
 #include "verify/certificate/pair_list.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -300,7 +296,6 @@ TEST(CertificateText, WritesNamesThatAreNotUtf8) {
   EXPECT_THROW(to_text(certificate), std::logic_error);
 }
 
-/// The text of a small certificate with one part replaced.
 std::string changed_text(const std::string& from, const std::string& to) {
   Certificate certificate;
   certificate.scene = {"name", 2, 2, "0123456789abcdef"};

@@ -6,10 +6,7 @@
 #include "experiments/method/distances.h"
 #include "tests/lab/grid_distance.h"
 #include "tests/lab/hard_pairs.h"
-#include "tests/lab/reference.h"
-#include "tests/lab/test.h"
-#include "verify/closest.h"
-#include "verify/rational.h"
+#include "tests/lab/parts.h"
 
 namespace farcull {
 namespace {
@@ -164,7 +161,8 @@ TEST(Fraction, ReadsTextInLowestTermsAndNothingElse) {
 
 using Whole = std::array<long, 3>;
 using Tetrahedron = std::array<Whole, 4>;
-constexpr std::array<std::array<int, 3>, 4> kFaces = {{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+constexpr std::array<std::array<std::uint32_t, 3>, 4> kFaces = {
+    {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
 
 long determinant(const Whole& o, const Whole& p, const Whole& q, const Whole& r) {
   std::array<Whole, 3> m{};
@@ -177,7 +175,7 @@ long determinant(const Whole& o, const Whole& p, const Whole& q, const Whole& r)
 /// Strictly: on the same side of each face as the corner across.
 bool holds(const Tetrahedron& t, const Whole& x) {
   for (const auto& [i, j, k] : kFaces) {
-    const int across = 6 - i - j - k;
+    const std::uint32_t across = 6 - i - j - k;
     const long of_x = determinant(t[i], t[j], t[k], x);
     const long of_t = determinant(t[i], t[j], t[k], t[across]);
     if (of_x == 0 || (of_x > 0) != (of_t > 0)) return false;
@@ -212,32 +210,19 @@ Tetrahedron random_tetrahedron(rational::Draws& random, long from, long below) {
   return t;
 }
 
-void add(Scene& scene, const Tetrahedron& t, double unit) {
-  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  for (const Whole& p : t) {
-    scene.vertices.emplace_back(static_cast<double>(p[0]) * unit, static_cast<double>(p[1]) * unit,
-                                static_cast<double>(p[2]) * unit);
-  }
-  for (const auto& [i, j, k] : kFaces) {
-    scene.triangles.push_back({first + static_cast<std::uint32_t>(i),
-                               first + static_cast<std::uint32_t>(j),
-                               first + static_cast<std::uint32_t>(k)});
-    scene.source_face.push_back(0);
-  }
-}
-
 /// An object of some tetrahedra, then another one.
 Scene scene_of(const std::vector<Tetrahedron>& a, const std::vector<Tetrahedron>& b, double unit) {
-  Scene scene;
+  lab::Parts parts;
   for (const auto* object : {&a, &b}) {
-    const auto first = static_cast<std::uint32_t>(scene.triangles.size());
-    for (const Tetrahedron& t : *object) add(scene, t, unit);
-    scene.objects.push_back(
-        {.name = "",
-         .first_triangle = first,
-         .triangle_count = static_cast<std::uint32_t>(scene.triangles.size()) - first});
+    for (const Tetrahedron& t : *object) {
+      const std::uint32_t first = parts.next();
+      for (const auto& [x, y, z] : t)
+        parts.vertex(double(x) * unit, double(y) * unit, double(z) * unit);
+      for (const auto& [i, j, k] : kFaces) parts.triangle(first + i, first + j, first + k);
+    }
+    parts.end("");
   }
-  return scene;
+  return parts.scene;
 }
 
 bool meet(const Scene& scene) {
@@ -279,7 +264,6 @@ TEST(IntegerInside, IsThatOfTetrahedraOfWholeNumbers) {
   }
 }
 
-// An object of two parts of which one is outside is not inside.
 TEST(IntegerInside, AllPartsHaveToBeInside) {
   const Tetrahedron large = {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}};
   const Tetrahedron inside = {{{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}}};

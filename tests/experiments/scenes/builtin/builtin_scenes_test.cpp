@@ -2,36 +2,13 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/mesh/scene_build.h"
-#include "tests/lab/test.h"
+#include "tests/lab/process.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 std::size_t crossings(const Scene& scene) { return all_colliding_pairs(scene).pairs.size(); }
-
-// Sets FARCULL_MESHES for one test.
-class MeshFolder {
- public:
-  explicit MeshFolder(const std::string& folder) {
-    const char* const old = std::getenv("FARCULL_MESHES");
-    if (old != nullptr) old_ = old;
-    setenv("FARCULL_MESHES", folder.c_str(), 1);
-  }
-  ~MeshFolder() {
-    if (old_.empty())
-      unsetenv("FARCULL_MESHES");
-    else
-      setenv("FARCULL_MESHES", old_.c_str(), 1);
-  }
-  MeshFolder(const MeshFolder&) = delete;
-  MeshFolder& operator=(const MeshFolder&) = delete;
-
- private:
-  std::string old_;
-};
 
 bool has_meshes() { return std::filesystem::exists(mesh_folder() + "/bunny00.off"); }
 
@@ -179,7 +156,7 @@ TEST(SceneSuffixes, TransformedRefusesWhatNoDoubleHolds) {
 
 TEST(PackagedScenes, SayHowToGetMissingMeshes) {
   const ScratchFolder folder;
-  const MeshFolder use(folder.path("meshes"));
+  const SetVariable use("FARCULL_MESHES", folder.path("meshes"));
   for (const BuiltinScene& entry : builtin_scenes()) {
     if (!entry.needs_meshes) continue;
     const Error error = error_of([&] { make_builtin_scene(entry.name); });
@@ -190,7 +167,7 @@ TEST(PackagedScenes, SayHowToGetMissingMeshes) {
 
 TEST(PackagedScenes, ComeFromTheFolderOfTheEnvironment) {
   const ScratchFolder folder;
-  const MeshFolder use(folder.path("."));
+  const SetVariable use("FARCULL_MESHES", folder.path("."));
   folder.write("bunny00.off", "OFF\n4 1 0\n-1 0 0\n3 0 0\n0 1 0\n100 100 100\n3 0 1 2\n");
   const Scene scene = make_builtin_scene("two-bunnies");
   // Half the extent along x is 2; the vertex that no triangle uses does not count.

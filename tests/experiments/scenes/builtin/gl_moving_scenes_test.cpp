@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/frames.h"
-#include "experiments/method/run.h"
 #include "tests/lab/gl.h"
 #include "tests/lab/moving.h"
 

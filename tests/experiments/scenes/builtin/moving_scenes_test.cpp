@@ -3,10 +3,6 @@
 #include <Eigen/Geometry>
 
 #include "experiments/measure/frames.h"
-#include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
-#include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/scene_file.h"
 #include "tests/lab/moving.h"
 #include "verify/exact.h"
 
@@ -22,7 +18,8 @@ bool same_topology(const Scene& a, const Scene& b) {
          a.objects.size() == b.objects.size();
 }
 
-// Moves, stays the same object and where promised the same memory, and forgets what was before.
+// The scene moves in place, in the same memory where that is promised, and a frame does not depend
+// on those before it.
 void expect_motion(const std::string& name) {
   SCOPED_TRACE(name);
   const long first = lab::first_frame(name);

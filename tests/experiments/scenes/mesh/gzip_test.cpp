@@ -1,7 +1,6 @@
 // Meshes compressed by gzip, and files of formats that are not read.
 #include "experiments/scenes/mesh/text.h"
 
-#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/gzip.h"
 #include "tests/lab/meshes.h"
