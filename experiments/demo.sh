@@ -32,7 +32,7 @@ esac
 
 mkdir -p build/demo
 results=build/demo/compare.json
-rm -f "$results" # so that an old record is not taken for this one
+rm -f "$results" # an old record must not be mistaken for a new one
 echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
 build/farcull compare "$scene" --json "$results" || status=$?
@@ -43,8 +43,7 @@ build/farcull compare "$scene" --methods far --resolutions 512 --broad-phase tri
 if [[ -e $results ]]; then echo "demo: all numbers are in $results"; fi
 if ((status)); then echo "demo: the comparison ended with status $status" >&2; fi
 
-# step TEXT COMMAND...: prints the text and runs the command. A step runs even if one before it
-# failed.
+# step TEXT COMMAND...: prints the text and runs the command. A step runs even if an earlier one failed.
 step() {
   local failed=0
   echo "demo: $1"

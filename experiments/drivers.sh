@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Tries every rasterizer that Debian's Mesa has without a GPU: the probes of `farcull doctor`, and what FAR
-# misses in the quick grid of the study radius, at the published radius and at that of the budget. One driver
-# does nothing at all (Mesa's noop): every probe of what it draws has to fail there.
+# misses in the quick grid of the study radius, at the published radius and at the radius of the budget. One
+# driver, Mesa's noop, does nothing at all, so every probe of what it draws has to fail.
 #   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/results/drivers.md
-#   bash experiments/drivers.sh zink noop    these; the tables are printed
-#     --probes           the probes alone
-#     --program FARCULL  this program, and nothing is installed or built
-#     --out DIR          default build/drivers; what is there of the same program is not measured again
+#   bash experiments/drivers.sh zink noop    only these; prints the tables
+#     --probes           only the probes
+#     --program FARCULL  uses this program; installs and builds nothing
+#     --out DIR          default build/drivers; results of the same program that are there are kept
 # Exit status: 0; 1 a driver whose probes pass missed a pair at the budget's radius, or noop passed a probe;
 # 2 a run could not be made.
 set -euo pipefail
@@ -14,7 +14,7 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-# A driver, its environment, and what it is.
+# The drivers, their environments, and what they are.
 drivers=(llvmpipe llvmpipe-128 zink softpipe softpipe-4.5 noop)
 declare -A settings=(
   [llvmpipe]="GALLIUM_DRIVER=llvmpipe"
@@ -76,7 +76,7 @@ unset "${!MESA_@}" "${!GALLIUM_@}" "${!LP_@}" "${!EGL_@}" "${!__EGL_@}" VK_DRIVE
 # Mesa takes any Gallium driver for its software device only where this is set.
 export LIBGL_ALWAYS_SOFTWARE=true
 
-# under DRIVER COMMAND...: runs the command with this driver, and with verdicts of this driver and this program alone.
+# under DRIVER COMMAND...: runs the command with this driver. Verdicts are cached for each driver and program.
 under() {
   local -a variables
   read -ra variables <<<"${settings[$1]}"
@@ -105,7 +105,7 @@ measure() {
   status=0
   under "$1" timeout 3600 "$program" experiment radius --quick --resume --device software --out "$folder/results" \
     >"$folder/study.txt" 2>"$folder/study.said" || status=$?
-  # Status 2: some points have no answer, and the study names them. The other rows count.
+  # Status 2: some points have no answer, and the study names them. The other rows are used.
   if ((status > 2)); then
     echo "drivers: $1: the study ended with status $status; $folder/study.said says why" >&2
     return 2
@@ -114,7 +114,7 @@ measure() {
 }
 
 assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9)
-# The probe of A10 asks whether the driver has threads, not what it draws. So noop passes it.
+# The probe of A10 is about threads of the driver, not about what it draws, so noop passes it.
 drawn_probes="p.value ->> 'assumption' <> 'A10'"
 probes_table() {
   local driver json
@@ -149,8 +149,8 @@ broken_table() {
       FROM json_each(readfile('$out/$driver/doctor.json'), '\$.probes') p WHERE NOT p.value ->> 'pass'"
   done
 }
-# For each kind of radius: pairs that FAR missed of those that collide, and broken lemmas of the points tried.
-# Rows of the native canvas and of models of a device are the same for all drivers, and are left out.
+# For each of the two radii: how many colliding pairs FAR missed, and at how many points the lemmas are broken.
+# Leaves out rows of the native canvas and of models of a device, which are the same for all drivers.
 drawn="device NOT IN ('cpu', 'native')"
 missed_table() {
   local driver store
@@ -211,7 +211,7 @@ for driver in "${chosen[@]}"; do
   fi
 done
 if [[ -n $whole && -z $probes_only ]] && ((status == 0)) && [[ -d $farcull_root/docs ]]; then
-  # The text above the mark stays.
+  # Keeps the text of the page up to the mark.
   page=$farcull_root/docs/results/drivers.md
   { sed '/^<!-- /q' "$page"; echo; cat "$out/results.md"; } >"$out/page.md"
   cp "$out/page.md" "$page"

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Everything that this machine can say of its GPU, in one command and within two hours: the probes, missed
+# Measures all that farcull can on this machine's GPU, in one command and within two hours: the probes, missed
 # pairs, times beside other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of
-# reliability, all studies and their report. The most telling parts come first. It installs what is missing
+# reliability, all studies and their report. The most important parts come first. It installs what is missing
 # and builds.
 #   bash experiments/hardware.sh
-#     --minutes N      how long measuring may take (default 120). What was left out or cut off is named
+#     --minutes N      how long measuring may take (default 120); parts left out or cut off are named
 #     --device DEVICE  default hardware; software (Mesa's) or native for a trial
 #     --out DIR        default build/hardware-COMMIT-DEVICE
-# Call it again to go on, after Ctrl-C, a kill or a budget that was spent: a part that is done is not measured
-# again, and studies go on point by point. At the end there is one archive, DIR.tar.gz, and a page,
-# DIR/NAME.md, where NAME is that of the device. For hardware the page is also put in docs/results/.
-# It stops when DIR has 20 GiB. Exit status: 0; 1 a pair was missed or a check failed; 2 it could not begin;
+# Call it again to go on after Ctrl-C, a kill or a budget that was spent: it does not measure a part again that
+# is done, and studies go on point by point. It makes one archive, DIR.tar.gz, and a page, DIR/NAME.md, where
+# NAME is the name of the device. For hardware it also puts the page in docs/results/. It stops when DIR has 20
+# GiB. Exit status: 0; 1 a pair was missed or a check failed; 2 it could not begin;
 # 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
 set -euo pipefail
 
@@ -52,7 +52,7 @@ if [[ -e $out/commit && $(<"$out/commit") != "$version, $device" ]]; then
   refuse "$out is of $(<"$out/commit"); this is $version, $device; name another folder with --out"
 fi
 echo "$version, $device" >"$out/commit"
-# The scripts called below must build nothing: if a file was edited meanwhile, it would be another program.
+# The scripts called below must build nothing: an edited file would make another program.
 export FARCULL_BUILT=yes DEVICE=$device XDG_CACHE_HOME=$out/cache
 
 began=$SECONDS
@@ -68,9 +68,8 @@ say() { printf 'hardware: %s\n' "$*"; }
 
 left() { echo $((budget - (SECONDS - began))); } # seconds
 
-# step NAME SHARE TEXT COMMAND...: runs the command unless it is done. It may take 1/SHARE of the time that
-# is left, or 10 minutes if that is more. steps/NAME gets the status and the seconds, logs/NAME.txt what the
-# command said.
+# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call did. It may take 1/SHARE of the time
+# that is left, but at least 10 minutes. steps/NAME gets the status and the seconds, logs/NAME.txt the output.
 step() {
   local name=$1 text=$3 used
   local -i share=$2 limit start status=0
@@ -90,8 +89,8 @@ step() {
   fi
   say "$text (part $name, at most $limit s)"
   start=$SECONDS
-  # A signal interrupts `wait`, but no command in the foreground. Children in the background ignore Ctrl-C
-  # unless they are told otherwise; timeout passes on the signals that it gets.
+  # The command runs in the background, since a signal interrupts `wait`, but no command in the foreground.
+  # Such a command ignores Ctrl-C unless `env` restores it; timeout passes on the signals that it gets.
   env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
   child=$!
   wait "$child" || status=$?
@@ -133,9 +132,7 @@ bench() { # SHARE SCENE [OPTIONS]: all peers, on all cores and on one
     if ((cores == 1)); then return; fi
   done
 }
-if [[ -e $out/steps/doctor ]]; then
-  say "going on with $out"
-fi
+if [[ -e $out/steps/doctor ]]; then say "going on with $out"; fi
 step doctor 1 "the probes of the assumptions" build/farcull doctor --device "$device" --json "$out/doctor.json"
 if [[ ! -e $out/steps/doctor ]]; then
   cat "$out/logs/doctor.txt" >&2 2>/dev/null || true
@@ -174,7 +171,7 @@ if [[ ! -e $out/results/results.sqlite ]]; then
 elif ! "${FARCULL_PYTHON:-/usr/bin/python3}" -c 'import matplotlib, pandas' 2>/dev/null; then
   missing+=("report (of the studies): left out, python3-matplotlib and python3-pandas are not here; elsewhere: farcull report DIR/results")
 else
-  # The report is not part of the budget, since it shows what the budget was spent on. It takes a minute.
+  # The report takes a minute, and is made even if the budget is spent.
   budget=$((budget + 600))
   step report 1 "the report of the studies" build/farcull report "$out/results" --device "$device"
 fi
@@ -190,7 +187,7 @@ failed=()
 for file in "$out"/steps/*; do
   if [[ $(<"$file") == 1\ * ]]; then failed+=("${file##*/}"); fi
 done
-# section HEADING PATTERNS...: prints the output of the parts that are done.
+# section HEADING PATTERNS...: prints the output of the parts that are done and match.
 # shellcheck disable=SC2016 # the backticks are those of the page
 section() {
   local heading=$1 pattern part status seconds

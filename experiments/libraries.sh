@@ -2,12 +2,12 @@
 # Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
 # labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
 # program and the contestants, runs the study and prints where the tables are.
-#   bash experiments/libraries.sh --quick [DIR]   the small suite; contestants are asked side by side, so
-#                                                 that their times say nothing; VTK and Open3D only
-#                                                 where they are installed, since they are large
-#   bash experiments/libraries.sh --keep [DIR]    the small suite, one after the other. When it is whole,
-#                                                 the report is copied to docs/results
-#   bash experiments/libraries.sh [DIR]           the same of the full suite, an hour and a half; a second
+#   bash experiments/libraries.sh --quick [DIR]   the small suite; two contestants are asked at a time, so
+#                                                 their times say nothing. VTK and Open3D, which are
+#                                                 large, take part only if they are installed
+#   bash experiments/libraries.sh --keep [DIR]    the small suite, one contestant after the other. When all
+#                                                 is measured, the report is copied to docs/results
+#   bash experiments/libraries.sh [DIR]           the same with the full suite, an hour and a half; a second
 #                                                 run goes on
 # DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
 # and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
@@ -32,7 +32,7 @@ farcull_setup
 [[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
 
-# Without these packages of npm their contestants are named as missing.
+# If npm cannot install these packages, the report says that their contestants are missing.
 mkdir -p build/contestants
 npm_packages=(three@0.187.0 three-mesh-bvh@0.9.17 @dimforge/rapier3d-compat@0.21.0 cannon-es@0.20.0
   manifold-3d@3.5.4 jolt-physics@1.1.0)
@@ -52,8 +52,8 @@ if [[ $keep == yes && -e $out/results-1-of-2.sqlite ]]; then
 elif [[ $keep == yes || -e $out/results.sqlite ]]; then
   ask || status=$?
 else
-  # Two halves side by side, about a suite that is there before they look for it. Each is a group of
-  # processes, since a job of a script does not see an interrupt otherwise.
+  # Two halves run side by side, and both need the suite. Each is a group of processes (set -m), since a
+  # background job of a script does not get an interrupt otherwise.
   [[ -e $out/suite/suite.txt ]] || build/farcull suite "$out/suite"
   running=()
   set -m

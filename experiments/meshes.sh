@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded
-# and unpacked, not installed: that needs no root, and small images do not install documentation,
-# which contains the meshes.
+# and unpacked, not installed, since that needs no root. (Small images also leave out documentation
+# when they install a package, and the meshes are documentation.)
 # Exit status: 0 all meshes are there; 3 they cannot be obtained, and stderr says why; anything else:
 # an error of this disk or of this script.
 set -euo pipefail
@@ -13,8 +13,7 @@ meshes=$root/build/meshes
 # The path of the archive in the package, and on a system where the package is installed.
 inside=usr/share/doc/libcgal-dev/data.tar.gz
 
-# Each mesh with its number of triangles. A file with another number is not the mesh that our results
-# were measured on.
+# The number of triangles of each mesh. A file with another number is not the mesh of our results.
 declare -A triangles=(
   [bunny00.off]=75408
   [ChineseDragon-10kv.off]=19994
@@ -24,8 +23,8 @@ declare -A triangles=(
   [elephant.off]=5558
 )
 
-# Prints the number of faces in the header of an OFF file. It is the second of the three counts after
-# the word OFF. Comments and empty lines may precede them.
+# Prints the number of faces of an OFF file: the second of the three counts after the word OFF, which
+# comments and empty lines may precede.
 faces_in_header() {
   awk '{ sub(/#.*/, ""); sub(/^[ \t]*[A-Z]*OFF/, "") } NF { print $2; exit }' "$1"
 }
@@ -49,10 +48,9 @@ all_in() {
 
 if all_in "$meshes"; then exit 0; fi
 
-# All work is done in a folder on the same file system, so that one rename puts a mesh in place. A run
-# that is killed leaves no part of a mesh.
+# All work is done in a folder on the same file system, so that one rename puts a whole mesh in place.
 mkdir -p "$root/build"
-# A run that was killed may have left its folder. No run lasts an hour.
+# Removes folders of runs that were killed. No run lasts an hour.
 find "$root/build" -maxdepth 1 -name 'meshes.unpacking.*' -mmin +60 -exec rm -rf {} +
 work=$(mktemp -d "$root/build/meshes.unpacking.XXXXXX")
 trap 'rm -rf "$work"' EXIT
@@ -79,8 +77,8 @@ take_from() {
   echo "meshes: ${#triangles[@]} in build/meshes/"
 }
 
-# Downloads the package into $work with the lists of apt. If these are missing or old, it downloads
-# lists into $work, which needs no root and changes nothing on the system.
+# Downloads the package into $work with the lists of apt. If these are missing or old, it also
+# downloads lists into $work, which needs no root and changes nothing on the system.
 download() {
   # Without this option apt, run by root, works as the user _apt, which may not write here, and warns.
   local -a apt=(apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=2)

@@ -1,5 +1,5 @@
-"""Judges the predictions of `farcull plan` on families of scenes that were not used to find the model, and writes their table to
-docs/results/misses.md and docs/results/misses.csv. Takes minutes.
+"""Compares the misses that `farcull plan` predicts with those of runs, on families of scenes that were not used to find the
+model, and writes the table to docs/results/misses.md and docs/results/misses.csv. Takes minutes.
    experiments/misses.py FARCULL"""
 import csv
 import json
@@ -29,7 +29,7 @@ def cross(a, b):
 
 
 def bar(start, end, width, sides, pieces=1, faces=None):
-    """A prism, closed unless only some faces are drawn; its long faces are cut into pieces."""
+    """A prism whose long faces are cut into pieces. faces: only so many long faces, without ends; None: a closed prism."""
     axis = unit([q - p for p, q in zip(start, end)])
     across = unit(cross(axis, direction()))
     other, rings, turn = cross(axis, across), [], random.random()

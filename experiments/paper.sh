@@ -5,8 +5,8 @@
 #   bash experiments/paper.sh --short [--out FILE.pdf]    docs/paper.md, two pages, as build/paper-short.pdf
 #     --out      the PDF; the figures are then drawn beside it, docs/ stays as it is, and nothing is installed
 # It needs matplotlib, pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --out
-# it installs them, as experiments/setup.sh does. Where one is missing the figures are drawn, what is missing is
-# named, and the status is 77.
+# it installs them, as experiments/setup.sh does. If one is missing, it draws the figures, names what is missing, and
+# the status is 77.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
@@ -68,13 +68,12 @@ for figure in "$folder"/paper-*.svg; do
   rsvg-convert -f pdf -o "$work/figures/$(basename "${figure%.svg}").pdf" "$figure"
 done
 cd "$work"
-# One text; each page begins with its title, which the filter takes as that of the paper or the part.
-{
-  sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/reliability.md"
+# One text of both pages. The filter makes their titles those of the paper and of its second part.
+for page in reliability budget; do
+  sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/$page.md"
   echo
-  sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/budget.md"
-  printf '\n# References\n\n'
-} >paper.md
+done >paper.md
+printf '# References\n\n' >>paper.md
 printf '%s\n' '\makeatletter\def\verbatim@font{\ttfamily\footnotesize}\makeatother' >preamble.tex
 pandoc paper.md --fail-if-warnings --from markdown-implicit_figures-superscript-subscript-tex_math_dollars-raw_tex-example_lists-fancy_lists+lists_without_preceding_blankline \
   --lua-filter "$root/experiments/paper.lua" --citeproc --bibliography "$root/docs/references.bib" \

@@ -19,15 +19,16 @@ matplotlib.rcParams.update({"font.family": "DejaVu Sans", "font.size": 11, "svg.
                             "text.parse_math": False})
 RED, BLUE, GREEN, GREY, DARK = "#bb3300", "#0077aa", "#228833", "#bbbbbb", "#223344"
 PIXEL = {"facecolor": "#ffee99", "edgecolor": "#aa8800", "linewidth": 1.5}
-# The radius of the budget (docs/budget.md, "snap" and "double") on a device of 4 subpixel bits, the fewest that OpenGL
-# allows, and on one of 8. WANDER: how far a corner of a proxy may move on the first one.
+# The radius of the budget (docs/budget.md, "snap" and "double") on a device with 4 subpixel bits, the fewest that OpenGL
+# allows, and on a device with 8. WANDER: how far a corner of a proxy may move on the first device.
 RADIUS_4_BITS, RADIUS_8_BITS, WANDER = 0.7969, 0.71402, 0.0884
-PUBLISHED = np.sqrt(0.5)  # of the published radius; what it adds for depth is below the thickness of a line
-REACHING = np.array([[0.05, 0.03], [-2.6, -0.5], [-1.2, -1.9]])  # its first corner reaches into the pixel [0, 1] x [0, 1]
+PUBLISHED = np.sqrt(0.5)  # the published radius, without its small term for depth, which a figure cannot show
+REACHING = np.array([[0.05, 0.03], [-2.6, -0.5], [-1.2, -1.9]])  # a triangle; its first corner is in the pixel [0, 1] x [0, 1]
 
 
 def rectangle(points, radius):
-    """The corners of the rectangle around the points, along the longest distance of two, `radius` away on each side."""
+    """The corners of the rectangle around the points, `radius` away on each side, along the line of the two points that are
+    farthest apart."""
     along = max((q - p for p in points for q in points), key=lambda d: d @ d)
     axes = np.array([along, [-along[1], along[0]]]) / np.hypot(*along)
     low, high = (points @ axes.T).min(0) - radius, (points @ axes.T).max(0) + radius
@@ -35,7 +36,7 @@ def rectangle(points, radius):
 
 
 def deepest(corners, point):
-    """How deep the point lies inside a convex polygon; negative: how far outside of a side's line."""
+    """The distance of a point in a convex polygon from the nearest side's line; negative if the point is outside."""
     side = np.roll(corners, -1, 0) - corners
     turn = np.sign(side[0, 0] * side[1, 1] - side[0, 1] * side[1, 0])
     away = point - corners
@@ -116,7 +117,7 @@ def winding(corners, point):
 def coverage():
     figure, panel = reaching_sheet()
     exact, c = rectangle(REACHING, RADIUS_4_BITS), np.array([0.5, 0.5])
-    inward = np.roll(exact, 2, 0) - exact  # the worst direction for the area near the corners
+    inward = np.roll(exact, 2, 0) - exact  # each corner moves towards the opposite one
     moved = exact + WANDER * inward / np.hypot(*inward.T)[:, None]
     for corner in exact:
         panel.add_patch(Circle(corner, WANDER, facecolor="#ffddbb"))
@@ -157,7 +158,7 @@ def entry_exit():
     x, z = np.meshgrid(np.linspace(-5, 4, 451), np.linspace(-3.2, 2.8, 301))
     points = np.stack([x.ravel(), np.full(x.size, row), z.ravel()], 1)
     round_ = distances(points, triangle).reshape(x.shape)
-    # The oriented box: along the longest edge, the normal, and what is perpendicular to both.
+    # The axes of the oriented box: the longest edge, the normal, and the direction perpendicular to both.
     along = triangle[1] - triangle[0]
     axes = np.array([along, np.cross(along, triangle[2] - triangle[0])])
     axes = np.vstack([axes, np.cross(*axes)])
@@ -197,7 +198,7 @@ LOOKS = [(RED, "no bit"), (BLUE, "F: meets nothing earlier"), (GREEN, "L: meets 
 
 
 def intervals(segment, columns, radius):
-    """Entry and exit of the fattened segment, a rectangle, at the centre of each column; NaN where it misses it."""
+    """Entry and exit of the fattened segment, a rectangle, at the centre of each column; NaN where it has none."""
     corners = rectangle(segment.reshape(2, 2), radius)
     out = np.full((columns, 2), np.nan)
     for i in range(columns):
@@ -214,7 +215,7 @@ def run_passes():
     """The bits of all triangles after each pass, until a round of two passes changes nothing."""
     boxes = [(np.minimum(o[:, 1], o[:, 3]).min(), np.maximum(o[:, 1], o[:, 3]).max()) for o in SCENE]
     bits = np.zeros((3, 4), int)
-    for o in range(3):  # no region: its depths meet those of no other object's box
+    for o in range(3):  # triangles whose depths are in no other object's box are in no region
         for t, s in enumerate(SCENE[o]):
             if all(max(s[1], s[3]) < low or min(s[1], s[3]) > high for k, (low, high) in enumerate(boxes) if k != o):
                 bits[o, t] = BOTH
@@ -226,7 +227,7 @@ def run_passes():
             for o in order:
                 live = [t for t in range(4) if bits[o, t] != BOTH]
                 for t in live:
-                    if not (drawn[o][t][:, 1] >= nearest).any():  # not seen behind what is stored
+                    if not (drawn[o][t][:, 1] >= nearest).any():  # in no column behind what is stored
                         bits[o, t] |= bit
                 for t in (t for t in live if bits[o, t] != BOTH):
                     nearest = np.fmin(nearest, drawn[o][t][:, 0])

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Measures the promise on large inputs. Each form prints a table, keeps its records in a folder of build/, and fails if a pair is
-# missed or an answer is wrong.
-#   bash experiments/reliability.sh [SCENE...]             build/reliability: FAR with both offsets is compared with the method exact
-#     on the packaged scenes, at resolutions 64 to 2048; with fewer resolutions copies of the scenes as well: moved by 1e6 along the
-#     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. The column "at risk" says how many pairs are at risk (lost
-#     with 0.9 of the radius). About half an hour on two cores without a GPU.
+# Tests on large inputs that no pair is missed. Each form prints a table, keeps its records in a folder of build/, and fails if a
+# pair is missed or an answer is wrong.
+#   bash experiments/reliability.sh [SCENE...]             build/reliability: compares FAR with both offsets with the method exact on
+#     the packaged scenes, at resolutions 64 to 2048; and with fewer resolutions on copies of the scenes: moved by 1e6 along the
+#     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. The column "at risk" counts pairs that are lost
+#     with 0.9 of the radius. About half an hour on two cores without a GPU.
 #   bash experiments/reliability.sh boxes [SCENE...]       build/reliability-boxes: boxes on packaged meshes, on needles and inside
 #     objects; the accounting decides every pair. --list prints all scenes.
 #   bash experiments/reliability.sh motion [SCENE...]      build/reliability-motion: boxes, i-collide and FAR with both offsets on
@@ -12,8 +12,8 @@
 #   bash experiments/reliability.sh distances [SCENE...]   build/reliability-distances: distances of every built-in scene, with the
 #     second half of its objects moved away by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene. Each is compared with the truth in
 #     rational numbers (tests/experiments/method/distance_truth.h), to the bit. An hour or two on one core.
-# motion and distances skip what has a record of this commit; remove the folder to begin again. Without a GPU the native canvas
-# draws; DEVICE=software (or another --device) asks for GL.
+# motion and distances skip runs that have a record of this commit; remove the folder to begin again. Without a GPU the native
+# canvas draws; DEVICE=software (or another --device) asks for GL.
 set -euo pipefail
 
 form=meshes

@@ -11,8 +11,8 @@
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
 #   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 19 scenes.
 # OPTIONS are those of `farcull experiment`. With --quick headline, cloth and proximity copy nothing. A measurement can be ended at
-# any time; the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit. A cloth is
-# then simulated again from its start.
+# any time; the same call goes on, but a cloth is simulated again from its start. Each commit has a store of its own under build/,
+# since a store refuses rows of another commit.
 # Exit status: 0; 1 if a method that promises missed a pair or lost a neighbour, or a distance was not exact; 2 if the measurements
 # did not complete.
 set -euo pipefail

@@ -9,11 +9,9 @@ set -euo pipefail
 
 farcull_root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 
-# Nothing here asks questions. If stdin were closed, the next file that a program opens would become
-# its stdin.
+# If stdin were closed, the next file that a program opens would become its stdin.
 exec </dev/null
-# dpkg refuses to run without PATH in the environment or without the sbin folders, which `su` and
-# cron leave out.
+# dpkg needs PATH in the environment, with the sbin folders, which `su` and cron leave out.
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin"
 
 # Packages that the program needs, and that CMake looks for when it configures the tests.
@@ -40,19 +38,18 @@ farcull_packages=(
   # libraries that farcull bench compares with; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev
 )
-# Packages that only tests need; a test names and skips what is missing. gappa proves the bounds of rounding errors. Tests of the
-# Python module take pytest and hypothesis, and install it into a virtual environment.
+# Packages that only tests need. A test whose package is missing is skipped, and names the package. gappa proves the bounds of
+# rounding errors. Tests of the Python module use pytest and hypothesis, and install the module into a virtual environment.
 farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
-# Packages of tests that are labelled "rare", 300 MB: pages of pictures in a browser, LaTeX of the report; the
-# paper as a PDF.
+# Packages of tests that are labelled "rare", 300 MB: for pages in a browser, LaTeX of the report, and the paper as a PDF.
 farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {
   local package held
-  # dpkg-query exits with 1 if it does not know one of them. That is no failure.
   # shellcheck disable=SC2016  # the format is dpkg's, not the shell's
   local format='${Package} ${db:Status-Status}\n'
+  # dpkg-query exits with 1 if it does not know a package. That is no failure.
   held=$(dpkg-query -W -f "$format" "${farcull_packages[@]}" 2>/dev/null) || true
   for package in "${farcull_packages[@]}"; do
     [[ $'\n'$held$'\n' == *$'\n'"$package installed"$'\n'* ]] || printf '%s\n' "$package"
@@ -65,24 +62,20 @@ farcull_as_root() {
   if ((EUID == 0)); then "${command[@]}"; else sudo "${command[@]}"; fi
 }
 
-# Runs apt-get. It waits while another apt holds the lock; a new machine upgrades itself in the
-# background.
-farcull_apt_get() { farcull_as_root apt-get -o DPkg::Lock::Timeout=300 "$@"; }
-
 # farcull_install PACKAGES...: one attempt. `update` may fail because of a source that we do not
-# need, so only the status of `install` counts.
+# need, so only the status of `install` counts. It waits while another apt holds the lock, since a new
+# machine upgrades itself in the background.
 farcull_install() {
-  farcull_apt_get update || echo "apt-get update failed; trying with the lists that are there"
-  farcull_apt_get install --yes --no-install-recommends "$@"
+  local -a apt_get=(farcull_as_root apt-get -o DPkg::Lock::Timeout=300)
+  "${apt_get[@]}" update || echo "apt-get update failed; trying with the lists that are there"
+  "${apt_get[@]}" install --yes --no-install-recommends "$@"
 }
 
-# Whether nothing is to be installed or built, since the calling script has built (FARCULL_BUILT).
-farcull_is_built() { [[ -n ${FARCULL_BUILT-} ]]; }
-
 # Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
-# returns 2. A script that needs more packages appends them to farcull_packages first.
+# returns 2. A script that needs more packages appends them to farcull_packages first. Nothing is
+# installed or built if FARCULL_BUILT is set, since the calling script has built.
 farcull_setup() {
-  if farcull_is_built; then return 0; fi
+  if [[ -n ${FARCULL_BUILT-} ]]; then return 0; fi
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     echo "setup: no apt-get here, so nothing is installed; CMake names what it does not find" >&2
     return 0
@@ -138,11 +131,6 @@ farcull_jobs() {
   printf '%s\n' $((jobs > 1 ? jobs : 1))
 }
 
-# Prints the value of a CMake cache entry of the build folder; nothing if there is none.
-farcull_cached() {
-  sed -n "s/^$1:[^=]*=//p" "$farcull_root/build/CMakeCache.txt" 2>/dev/null || true
-}
-
 # Configures build/ as Release with the tests, unless that was done before. CMake itself notices a
 # CMakeLists.txt that changed.
 farcull_configure() {
@@ -150,8 +138,7 @@ farcull_configure() {
   local -a how=()
   if [[ -e $build/build.ninja || -e $build/Makefile ]]; then
     # A configured folder keeps its generator.
-    if [[ $(farcull_cached CMAKE_BUILD_TYPE) == Release &&
-      $(farcull_cached FARCULL_TESTS) == ON ]]; then
+    if [[ $(grep -cE '^(CMAKE_BUILD_TYPE:[^=]*=Release|FARCULL_TESTS:[^=]*=ON)$' "$build/CMakeCache.txt") == 2 ]]; then
       return 0
     fi
   else
@@ -169,8 +156,7 @@ farcull_configure() {
 }
 
 # farcull_progress JOBS LOG: reads the output of a build by Ninja or make. It prints the messages of
-# compilers and linkers on stderr. Of the steps it prints one line for each fifth of the build, so that
-# a long build is not silent.
+# compilers and linkers on stderr, and a line after each fifth of the steps.
 farcull_progress() {
   local line percent said=-1
   local steps='^\[ *([0-9]+)(/([0-9]+)|%)\] (.*)$'
@@ -199,26 +185,32 @@ farcull_progress() {
   done
 }
 
+# farcull_make FOLDER OPTIONS...: builds in this folder, with the options of `cmake --build`. It prints
+# the progress and the messages of the compilers.
+farcull_make() {
+  local folder=$1 jobs
+  jobs=$(farcull_jobs)
+  if ! NINJA_STATUS='[%f/%t] ' LC_ALL=C cmake --build "$farcull_root/$folder" --parallel "$jobs" "${@:2}" 2>&1 |
+    tee "$farcull_root/$folder/build.log" | farcull_progress "$jobs" "$folder/build.log"; then
+    echo "build: failed (all output: $folder/build.log)" >&2
+    return 2
+  fi
+}
+
 # farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named.
-# It prints one line if there is nothing to do, else the progress and the messages of the compilers.
+# It prints one line if there is nothing to do.
 farcull_build() {
-  if farcull_is_built; then return 0; fi
-  local build=$farcull_root/build started=$SECONDS jobs steps
-  local -a what=()
-  if (($#)); then what=(--target "$@"); fi
+  if [[ -n ${FARCULL_BUILT-} ]]; then return 0; fi
+  local started=$SECONDS steps
+  local -a what=(--config Release)
+  if (($#)); then what+=(--target "$@"); fi
   if ! command -v cmake >/dev/null; then
     echo "build: cmake is missing (Debian: cmake); it will name whatever else is missing" >&2
     return 2
   fi
   farcull_configure || return
-  jobs=$(farcull_jobs)
-  what+=(--config Release --parallel "$jobs")
-  if ! NINJA_STATUS='[%f/%t] ' LC_ALL=C cmake --build "$build" "${what[@]}" 2>&1 |
-    tee "$build/build.log" | farcull_progress "$jobs" build/build.log; then
-    echo "build: failed (all output: build/build.log)" >&2
-    return 2
-  fi
-  steps=$(grep -cE '^\[[^]]*\] (Building|Linking)' "$build/build.log" || true)
+  farcull_make build "${what[@]}" || return
+  steps=$(grep -cE '^\[[^]]*\] (Building|Linking)' "$farcull_root/build/build.log" || true)
   if ((steps)); then
     echo "build: done in $((SECONDS - started)) s (Release, build/)"
   else
@@ -229,26 +221,21 @@ farcull_build() {
 # farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in another build
 # folder.
 farcull_build_beside() {
-  local build=$farcull_root/$1 log=$1/build.log started=$SECONDS jobs said
+  local folder=$1 started=$SECONDS said
+  local build=$farcull_root/$1
   local -a targets how=()
   read -ra targets <<<"$2"
-  shift 2
   if [[ ! -e $build/CMakeCache.txt ]] && command -v ninja >/dev/null; then how=(-G Ninja); fi
-  if ! said=$(cmake -S "$farcull_root" -B "$build" "${how[@]}" "$@" 2>&1); then
-    printf '%s\n' "$said" "build: CMake could not configure ${log%/*}/" >&2
+  if ! said=$(cmake -S "$farcull_root" -B "$build" "${how[@]}" "${@:3}" 2>&1); then
+    printf '%s\n' "$said" "build: CMake could not configure $folder/" >&2
     return 2
   fi
-  jobs=$(farcull_jobs)
-  if ! NINJA_STATUS='[%f/%t] ' LC_ALL=C cmake --build "$build" --parallel "$jobs" \
-    --target "${targets[@]}" 2>&1 | tee "$farcull_root/$log" | farcull_progress "$jobs" "$log"; then
-    echo "build: failed (all output: $log)" >&2
-    return 2
-  fi
-  echo "build: ${targets[*]} done in $((SECONDS - started)) s (${log%/*}/)"
+  farcull_make "$folder" --target "${targets[@]}" || return
+  echo "build: ${targets[*]} done in $((SECONDS - started)) s ($folder/)"
 }
 
-# farcull_keep_report NAME TITLE REPORT [CALL]: the page of a report becomes docs/results/NAME.md, with the
-# figures, pictures and tables that it shows or links. Those that no page there has are removed.
+# farcull_keep_report NAME TITLE REPORT [CALL]: copies the page of a report to docs/results/NAME.md, with the
+# figures, pictures and tables that it shows or links. Removes such files that no page there shows or links.
 farcull_keep_report() {
   local results=$farcull_root/docs/results file
   mkdir -p "$results"/{figures,pictures,tables}

@@ -7,7 +7,6 @@ status: 0 done; 1 a promise is broken, and the report says so; 2 nothing was mad
 import argparse
 import datetime
 import fcntl
-import importlib
 import json
 import logging
 import os
@@ -17,7 +16,7 @@ import signal
 import subprocess
 import sys
 
-# A row breaks its promise if it promises and counts one of these; for a contestant, no answer counts too.
+# A row that promises breaks its promise if one of these counts is above 0. A contestant also breaks it by no answer.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
 FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
@@ -39,8 +38,8 @@ try:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides its messages about cache folders
     import pandas as pd
     import draw
+    import frame
     import pages
-    import tables
     from chapters import devices
     from draw import legible
     from estimates import counted
@@ -67,8 +66,9 @@ def check_place(place):
 
 
 class Unfinished:
-    """The folder .report-unfinished, in which a report is made. Removed in the end; publish() puts it in place before.
-    While its results are locked, no other report of them is made, so that what a killed one left can be removed."""
+    """The folder .report-unfinished, in which a report is made. publish() puts it in place; without that it is removed in
+    the end. The results are locked meanwhile: no other process makes a report of them, so what a killed process left can
+    be removed."""
 
     def __init__(self, results):
         self.place, self.path, self.old = (results / name for name in ("report", ".report-unfinished", ".report-old"))
@@ -128,7 +128,7 @@ class Reporter:
                           "use the farcull that measured it")
         known = self.context["studies"][names.index(study.name)]
         chapter = Chapter(study.name, known["title"], known["question"], command_of(study, self.store.runs))
-        importlib.import_module("chapters." + study.name.replace("-", "_")).fill(chapter, study)
+        frame.fill(chapter, study)
         others = [(other.device, other.study(study.name, study.constants))
                   for other in self.others if study.name in other.names]
         devices.fill(chapter, study, self.store.device, others)
@@ -137,7 +137,7 @@ class Reporter:
         for where, of in [("", study)] + [(f" on {device}", of) for device, of in others]:
             self.broken += [f"{study.name}{where}: {describe(row)}" for row in promising(of.rows).itertuples()
                             if any(value(row, name) > 0 for name in BROKEN)]
-        # The chapter may find something broken although each row is right, such as a solver that made energy.
+        # A chapter may find something broken although each row is right, for example that energy grew.
         if len(self.broken) == before:
             self.broken += [f"{study.name}: {text}" for broken, text in chapter.findings if broken]
         if not study.complete:
@@ -154,9 +154,9 @@ class Reporter:
                 write(root / "figures" / f"{figure.name}.{kind}", content)
             drawn.svgs.append(files["svg"])
         for table in chapter.tables:
-            write(root / "tables" / (table.name + ".csv"), tables.table_csv(table))
-            write(root / "tables" / (table.name + ".tex"), tables.table_latex(table))
-        write(root / "tables" / (chapter.study + "-rows.csv"), tables.rows_csv(drawn.study))
+            write(root / "tables" / (table.name + ".csv"), pages.table_csv(table))
+            write(root / "tables" / (table.name + ".tex"), pages.table_latex(table))
+        write(root / "tables" / (chapter.study + "-rows.csv"), pages.rows_csv(drawn.study))
         for name, text in chapter.files.items():
             write(root / name, text)
         drawn.pictures = [self.picture(picture, root) for picture in chapter.pictures]
@@ -189,10 +189,6 @@ class Reporter:
             where, _, reason = (lines or ["farcull picture: failed"])[-1].partition(": ")
             raise Refusal(where, reason.split("; ")[0], "")
         return lines if done.returncode == 1 else []
-
-    def write_pages(self, root):
-        write(root / "index.html", pages.page_html(self.page))
-        write(root / "results.md", pages.page_markdown(self.page))
 
     def tell(self):
         counts = [counted(len(self.page.chapters), "study", "studies")]
@@ -232,17 +228,18 @@ def report(arguments):
             reporter.fill(study)
         for drawn in reporter.page.chapters:
             reporter.draw(drawn, unfinished.path)
-        reporter.write_pages(unfinished.path)
+        write(unfinished.path / "index.html", pages.page_html(reporter.page))
+        write(unfinished.path / "results.md", pages.page_markdown(reporter.page))
         reporter.say()
         unfinished.publish()
     return reporter.tell()
 
 
-def interrupt(number, _):
-    raise Interrupted(number)
-
-
 def main():
+    def interrupt(number, _):
+        raise Interrupted(number)
+
+
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("context")

@@ -1,34 +1,32 @@
 """The parts of a chapter of the report, and functions on the rows of its study.
 
-How to write a chapter. The file chapters/NAME.py (dashes become underscores) is the chapter of the
-study NAME, and has one function `fill(chapter, study)`, which returns nothing:
+How to write a chapter. The file chapters/NAME.py (dashes become underscores) is the chapter of the study NAME, and has one
+function `fill(chapter, study)`, which returns nothing. The fill() of this file calls it:
 
-- `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)`
-  and `chapter.find_broken(text)` (a broken promise), what was not measured to
-  `chapter.limits` (what a study cannot show is in docs/experiments.md), and Figure, Table,
-  Picture and files to their lists. In text, put `backticks` around commands. Broken findings are put first afterwards.
-- `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid.
-  `study.all_rows` also has the rows that say in `left_out` why nothing was measured;
-  `study.points` is the whole grid. There is a column for each
-    - axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, ""
-      where they do not apply), resolution (0: none), frame (-1: none), seed (0: none);
-    - count, by its name, or NAME_count if an axis has that name; NaN if the row has none;
-    - time, as NAME_ms ("total_ms"), and `runs`: a tuple of the times of the runs, perhaps empty, and
-      `rounds`: the same, a tuple for each round; void ones are empty in it;
-    - and `contestant`: the method as figures and tables name it ("FAR (OBB)").
-- Read columns that a store may lack by `column(rows, name)`, `total(rows, name)`,
-  `value(row, name)`; a row is one of `rows.itertuples()`, with columns as attributes.
+- `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)` and
+  `chapter.find_broken(text)` (a broken promise; these come first afterwards), and Figure, Table, Picture and files to their
+  lists. In text, put `backticks` around commands.
+- `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid. `study.all_rows` also has the rows that
+  say in `left_out` why nothing was measured; `study.points` is the whole grid. The columns are
+    - each axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, "" where they do not
+      apply), resolution (0: none), frame (-1: none), seed (0: none);
+    - each count, by its name, or NAME_count if an axis has that name; NaN if the row has none;
+    - each time, as NAME_ms ("total_ms"); `runs`, a tuple of the times of the runs, perhaps empty; and `rounds`, the same with
+      a tuple for each round, which is empty if the round is void;
+    - `contestant`: the method as figures and tables name it ("FAR (OBB)").
+- Read columns that a store may lack by `column(rows, name)`, `total(rows, name)`, `value(row, name)`; a row is one of
+  `rows.itertuples()`, with columns as attributes.
 - Format numbers with estimates.py (all of its names are here too), never by hand.
 
-farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with.
-chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` adds the results of
-further devices to any chapter; others are pairs of a device's name and its Study. A figure's
-Panel.strip has Series without y, each a row of its own below the panel.
+farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with. chapters/devices.py is no
+chapter: its `fill(chapter, study, device, others)` adds the results of further devices to any chapter; others are pairs of a
+device's name and its Study.
 
-chapters/offsets.py is a short example. A figure should have at most six series a panel; its `n`
-states the size of its sample, and its caption and title say what it shows. Zeros on a logarithmic
-axis need Axis(..., zero=True), and are then drawn at zero.
+chapters/offsets.py is a short example. A figure should have at most six series a panel; its `n` states the size of its
+sample, and its caption and title say what it shows. Zeros on a logarithmic axis need Axis(..., zero=True), and are then drawn
+at zero.
 """
+import importlib
 import json
 import math
 import re
@@ -274,12 +272,14 @@ def promising(rows):
     return where_true(rows, "promises")
 
 
-def by(rows, name):
-    """Pairs of a value of the column and its rows, in the order of first occurrence. name: a
-    column, or a function of a row."""
-    keys = rows[name] if isinstance(name, str) else pd.Series(
-        [name(row) for row in rows.itertuples()], rows.index, dtype=object)
-    return list(rows.groupby(keys, sort=False)) if len(rows) else []
+def by(rows, name, sort=False):
+    """Pairs of a value of the column and its rows, in the order of first occurrence. name: a column or several."""
+    return list(rows.groupby(name, sort=sort)) if len(rows) else []
+
+
+def groups(rows, name):
+    """by(), in the order of the values."""
+    return by(rows, name, True)
 
 
 def resolutions(rows):
@@ -529,6 +529,14 @@ def add_kept(chapter, rows, pairs):
                      f"{counted(runs.scene.map(scene_base).nunique(), 'scene', 'scenes')}{words}; " + (
                          risk_text(rows, runs) if drawn else
                          "no view was drawn, so these tested no radius, pixel or depth") + ".")
+
+
+def fill(chapter, study):
+    """Fills the chapter by its file. Leaves out figures without panels and tables without rows."""
+    importlib.import_module("chapters." + study.name.replace("-", "_")).fill(chapter, study)
+    chapter.figures = [figure for figure in chapter.figures if figure.panels]
+    chapter.tables = [table for table in chapter.tables if table.rows]
+    add_gaps(chapter, study)
 
 
 def add_gaps(chapter, study):

@@ -1,8 +1,10 @@
-"""The report as results.md, broken promises first, then a section for each chapter; and the same as one self-contained
-page of HTML, which page_html() makes from it."""
+"""The report as files: results.md, broken promises first, then a section for each chapter; the same as one self-contained
+page of HTML; tables as CSV for programs and as LaTeX (booktabs) for papers."""
 import base64
 import collections
+import csv
 import html
+import io
 import re
 import shlex
 from dataclasses import dataclass, field
@@ -19,8 +21,8 @@ MARK = '<meta name="generator" content="farcull report">'  # marks an index.html
 @dataclass
 class DrawnPicture:
     picture: object
-    png: bytes = b""      # empty if there is none
-    left_out: str = ""    # why it was left out
+    png: bytes = b""    # empty if the picture was left out
+    left_out: str = ""  # why it was left out
 
     @property
     def command(self):
@@ -53,13 +55,8 @@ def broken(page):
     return [(d.chapter, f) for d in page.chapters for f in d.chapter.findings if f[0]]
 
 
-def rows_of_runs(page):
-    """The number of rows of each run."""
-    return collections.Counter(run for drawn in page.chapters for run in drawn.study.all_rows.run)
-
-
 def runs_table(page):
-    rows = rows_of_runs(page)
+    rows = collections.Counter(run for drawn in page.chapters for run in drawn.study.all_rows.run)
     return Table("runs", "", columns(
         ["run", "started", "commit", "device", "driver", "CPU"], ["cores"], ["options"], ["rows"]), [
         [str(run.run), run.started, run.commit_id, run.gl_renderer,
@@ -123,7 +120,7 @@ def section(number, drawn, count):
 
 
 def front_markdown(page):
-    """What a reader sees first: broken promises, then the study "headline" as a figure, a table and its sentences."""
+    """The beginning of the page: broken promises, then the study "headline" as a figure, a table and its sentences."""
     out = "# Results\n\n"
     if broken(page):
         out += ("**Broken.** What must never happen has happened:\n\n" +
@@ -226,3 +223,53 @@ def page_html(page):
         f'<p>farcull {html_text(page.commit[:12] or "of no commit")}, written {html_text(page.written)}. Figures, tables as CSV and '
         f'LaTeX, and all rows lie beside this page in figures/ and tables/.</p>\n<nav>\n<ul>\n{contents}</ul>\n</nav>\n{body}'
         '</body>\n</html>\n')
+
+
+# ---- tables
+
+# Signs that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
+LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
+         "→": "$\\to$", "−": "$-$", "∞": "$\\infty$", "µ": "$\\mu$", "≈": "$\\approx$",
+         "⁻": "$^{-}$", **{d: f"$^{i}$" for i, d in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
+         **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
+         "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
+         "|": "$|$", "`": ""}
+ROWS_OF_FLOAT = 40  # a float is at most one page
+
+
+def latex_text(text):
+    return "".join(LATEX.get(c, " " if c < " " else c) for c in text)
+
+
+def table_csv(table):
+    out = io.StringIO()
+    csv.writer(out).writerows([[name for name, _ in table.columns]] + table.rows)  # RFC 4180
+    return out.getvalue()
+
+
+def table_latex(table):
+    """Floats with caption, label tab:NAME and the rules of booktabs, scaled if they are wider than the text."""
+    def line(cells):
+        return "    " + " & ".join(latex_text(cell) for cell in cells) + " \\\\\n"
+
+    out, caption = "% \\usepackage{booktabs,graphicx}\n", latex_text(table.caption)
+    for begin in range(0, max(len(table.rows), 1), ROWS_OF_FLOAT):
+        title = f"{caption}.}}\n  \\label{{tab:{table.name}}}" if begin == 0 \
+            else f"{caption}, continued.}}"
+        out += ("\\begin{table}\n  \\centering\n  \\caption{" + title +
+                "\n  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
+                "  \\begin{tabular}{" + "".join(side for _, side in table.columns) +
+                "}\n    \\toprule\n" + line(name for name, _ in table.columns) +
+                "    \\midrule\n" +
+                "".join(line(row) for row in table.rows[begin:begin + ROWS_OF_FLOAT]) +
+                "    \\bottomrule\n  \\end{tabular}}\n\\end{table}\n")
+    return out
+
+
+def rows_csv(study):
+    """Everything that the store holds of the study, and the method as figures name it."""
+    rows = study.all_rows.drop(columns=["counts", "times"])
+    rows = rows.assign(runs=[" ".join(map(repr, runs)) for runs in rows.runs],
+                       **{name: rows[name].astype(object).replace(none, "") for name, none in (
+                           ("resolution", 0), ("frame", -1), ("seed", 0))})
+    return rows.convert_dtypes().to_csv(index=False, lineterminator="\r\n")

@@ -27,26 +27,26 @@ KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
 QUICK = ('pair', 'distance')  # kinds without a path
 AHEAD = 32  # quick questions that are sent before their answers
 LONGEST = 1 << 16  # bytes of a line
-MOST = 1 << 28  # bytes of an answer; one without an end would take all memory
-AGAIN = 16  # every so many questions one is asked again
+MOST = 1 << 28  # bytes of an answer; an endless answer would take all memory
+AGAIN = 16  # of so many questions of a family, one is asked again
 OFF = 1e-6  # relative errors of distances and of points above this are counted
-ROUNDED = 2.0 ** -48  # of the largest coordinate: an error below this comes from rounding, and is not counted
+ROUNDED = 2.0 ** -48  # errors of distances up to this share of the largest coordinate are rounding, and are not counted
 
 
 class Wrong(Exception):
-    """The suite or the command is not as it has to be."""
+    """The suite or the command cannot be used."""
 
 
 # ---- a process and its answers
 
 class Child:
-    """A process with limits. `lines` has its output, as lists of lines; an empty list is the end."""
+    """A process with limits. `lines` is a queue of its output: lists of lines, and an empty list at the end."""
 
     def __init__(self, command, options):
         def limit():
             import resource  # pylint: disable=import-outside-toplevel  # not on Windows
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # it ends even if nobody is left to end it
+            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # so that it ends even if this program was killed
             resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
         self.errors = tempfile.TemporaryFile()
         posix = os.name == 'posix'
@@ -57,7 +57,7 @@ class Child:
         threading.Thread(target=self.write, daemon=True).start()
 
     def read(self):
-        """Lines come in lists, which is faster than one by one. One that is too long comes in parts."""
+        """Puts lines into the queue, many at a time, which is faster. A line that is too long comes in parts."""
         with self.process.stdout as file:
             part = b''
             for bytes_ in iter(lambda: file.read1(LONGEST), b''):
@@ -74,20 +74,20 @@ class Child:
         self.lines.put([])
 
     def write(self):
-        """Writes what was sent. A process that does not read makes this thread wait, and no other."""
+        """Writes what was sent. If the process does not read, only this thread waits."""
         with contextlib.suppress(OSError), self.process.stdin as file:
             for text in iter(self.texts.get, b''):
                 file.write(text)
                 file.flush()
 
     def send(self, text):
-        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # the bytes that a path has
+        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # gives the bytes of a path back
 
     def end_input(self):
         self.texts.put(b'')
 
     def end(self, seconds):
-        """How the process ended, after it was given some time, and why: an outcome and a reason."""
+        """Waits for the end of the process, and returns how it ended and why: an outcome and a reason."""
         try:
             status = self.process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -102,13 +102,13 @@ class Child:
         return 'no memory' if memory or status == -9 else 'crashed', reason
 
     def close(self):
-        """Ends it and the processes that it started."""
+        """Ends the process and the processes that it started."""
         with contextlib.suppress(OSError):
             os.killpg(self.process.pid, signal.SIGKILL) if os.name == 'posix' else self.process.kill()
         self.process.wait()
         self.end_input()
         self.errors.close()
-        while not self.lines.empty():  # the thread may wait for room
+        while not self.lines.empty():  # the thread that reads may wait for room in the queue
             self.lines.get()
 
 
@@ -116,24 +116,23 @@ Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS or card; fields: of the question, after its kind; family: of which deaths are counted.
+# kind: one of KINDS or card; fields: those after the kind; family: deaths are counted for each family.
 Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
-
 
 FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
 GRAMMAR = {int: re.compile('[0-9]{1,18}'), float: re.compile('-?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)?')}
 
 
 def number(text, kind=float):
-    """Reads what the grammar has; Python's own readers take blanks, underscores and more."""
+    """Reads a number of the grammar. Python's own readers also take blanks, underscores and more."""
     if not GRAMMAR[kind].fullmatch(text) or not math.isfinite(kind(text)):
         raise ValueError(text)
     return kind(text)
 
 
 def parse(kind, fields, so_far):
-    """Reads the fields of one line of an answer. The last line gives the Answer, with no ns if it has no time; others are
-    added to `so_far`. Raises ValueError for a line that the grammar does not have."""
+    """Reads the fields of one line of an answer. Returns the Answer for its last line, with no ns if the line has no time.
+    Adds other lines to `so_far`. Raises ValueError for a line that the grammar does not have."""
     word, *rest = fields
     if word == 'refused' and rest:
         return Answer('refused', None, 0, ' '.join(rest)[:160])
@@ -157,13 +156,13 @@ def parse(kind, fields, so_far):
 
 
 def ask_from(child, questions, first, answers, limit, start):
-    """Asks one process from question `first` on; fills `answers` and gives the next question that has none, and how the
-    process ended."""
+    """Asks one process from question `first` on, and fills `answers`. Returns the first question without an answer, and how
+    the process ended."""
     following, sent, so_far, size, since, lines = first, first, [], 0, time.monotonic(), collections.deque()
     while True:
         quick = sent < len(questions) and not so_far and questions[sent].kind in QUICK
         ahead = AHEAD if quick else 2
-        if sent < len(questions) and not so_far and sent <= following + ahead // 2:  # half of them at a time
+        if sent < len(questions) and not so_far and sent <= following + ahead // 2:  # sends half of `ahead` at a time
             until = min(following + ahead, len(questions))
             until = next((i for i in range(sent, until) if (questions[i].kind in QUICK) != quick), until)
             child.send(''.join('\t'.join([str(i), questions[i].kind, *questions[i].fields]) + '\n' for i in range(sent, until)))
@@ -198,13 +197,13 @@ def ask_from(child, questions, first, answers, limit, start):
             now = time.monotonic()
             answers[at] = answer if answer.ns is not None else answer._replace(ns=(now - since) * 1e9)
             following, so_far, since, size, start, left = at + 1, [], now, 0, 0, 0
-        elif left < 0:  # lines that are not the last one gain no time
+        elif left < 0:  # the limit is for the whole answer, not for each line
             return following, HUNG
 
 
 def ask(command, questions, options):
-    """An Answer to each question, and how the process ended after the last one. A death counts for the question at which
-    it happened; a new process gets the next."""
+    """An Answer to each question, and how the process ended after the last question. If a process dies, the question that it
+    did not answer gets that outcome, and a new process gets the next question."""
     answers = [NOT_ASKED] * len(questions)
     following, deaths, start = 0, collections.Counter(), max(30, 6 * options.limit)
     while following < len(questions):
@@ -218,7 +217,7 @@ def ask(command, questions, options):
         if following == len(questions):
             return answers, (outcome, reason)
         if (outcome == 'no memory' or reason.startswith('SIGXCPU')) and following > first:
-            continue  # earlier questions may have taken it: it is blamed only if it is the first of a process
+            continue  # earlier questions may have used it up, so only the first question of a process is blamed
         answers[following] = Answer(outcome, None, 0, reason)
         deaths[questions[following].family] += 1
         following += 1
@@ -226,7 +225,7 @@ def ask(command, questions, options):
 
 
 def ask_twice(command, questions, options):
-    """The answers, and for each question whether a second answer was another one (None: it was not asked again)."""
+    """The answers, and for each question whether a second answer differed (None: it was not asked again)."""
     answers = ask(command, questions, options)[0]
     step = AGAIN if questions and questions[0].kind != 'mesh' else 1
     at = collections.Counter()  # of each family
@@ -253,13 +252,13 @@ VALUES = {'answers': KINDS, 'means': ('closed', 'crossing'), **dict.fromkeys(('d
 
 
 def card_of(command, answer):
-    """The card of the program; if it gives none, that of a program that is asked everything."""
+    """The card of the program; if it has none, a card by which it is asked everything."""
     if answer.outcome not in ('answered', 'refused'):
         raise Wrong(f'{command[0]}: has no answer to the first question, `card`: {answer.outcome} {answer.reason}')
     return {**CARD, 'name': ' '.join(command), **dict(answer.value or [])}
 
 
-# ---- exact geometry: of what a library's own documentation promises, and of points that it gives
+# ---- exact geometry: for what a library's own documentation promises, and for points that it returns
 
 def minus(a, b):
     return [x - y for x, y in zip(a, b)]
@@ -271,10 +270,6 @@ def dot(a, b):
 
 def cross(a, b):
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def exact(triangle):
-    return [[Fraction(x) for x in corner] for corner in triangle]
 
 
 def whole(*triangles):
@@ -289,7 +284,8 @@ def normal(t):
 
 
 def proper(t):
-    """Whether a triangle is no segment and no point. Doubles decide if one term of the normal is far above their rounding."""
+    """Whether a triangle is no segment and no point. Doubles decide if a component of the normal is far above their
+    rounding."""
     u, v = minus(t[1], t[0]), minus(t[2], t[0])
     for i, k in (0, 1), (1, 2), (2, 0):
         p, q = u[i] * v[k], u[k] * v[i]
@@ -315,7 +311,7 @@ def point_to_segment(p, segment):
 
 
 def point_to_triangle(p, t):
-    """The square of the distance, of whole or rational numbers."""
+    """The square of the distance, for whole or rational numbers."""
     n = normal(t)
     if any(n) and all(dot(n, cross(minus(b, a), minus(p, a))) >= 0 for a, b in edges(t)):
         return Fraction(dot(n, minus(p, t[0])) ** 2, square(n))
@@ -323,7 +319,8 @@ def point_to_triangle(p, t):
 
 
 def segment_to_segment(e, f):
-    """The distance of the origin from all differences of their points, a parallelogram, which is two triangles."""
+    """The square of the distance of two segments. The differences of their points form a parallelogram; it is cut into two
+    triangles, and the distance of the origin from these is found."""
     d = [[minus(p, q) for q in f] for p in e]
     return min(point_to_triangle([0, 0, 0], [d[0][0], corner, d[1][1]]) for corner in (d[0][1], d[1][0]))
 
@@ -331,10 +328,11 @@ def segment_to_segment(e, f):
 def within(a, b, margin):
     """Whether two triangles that do not cross are no farther apart than the margin."""
     boxes = [[(min(axis), max(axis)) for axis in zip(*t)] for t in (a, b)]
-    if any(max(p[0] - q[1], q[0] - p[1]) > float(margin) for p, q in zip(*boxes)):  # rounding makes no gap exceed a double
+    # The margin is a double, so rounding does not bring a gap from below the margin to above it.
+    if any(max(p[0] - q[1], q[0] - p[1]) > float(margin) for p, q in zip(*boxes)):
         return False
     a, b, ((margin,),) = whole(a, b, [[float(margin)]])
-    for n in normal(a), normal(b):  # most are far apart along one of these
+    for n in normal(a), normal(b):  # most triangles are far apart along one of the normals
         at_a, at_b = [dot(n, p) for p in a], [dot(n, p) for p in b]
         gap = max(min(at_a) - max(at_b), min(at_b) - max(at_a))
         if gap > 0 and gap ** 2 > margin ** 2 * square(n):
@@ -344,7 +342,8 @@ def within(a, b, margin):
 
 
 def interval(t, n, origin, along):
-    """The part of the line along `along` in the plane (n, origin) that is in triangle t; empty if t is not on both sides."""
+    """The part of triangle t in the plane through `origin` with the normal n, as values along `along`; None if t is not on
+    both sides of the plane."""
     side = [dot(n, minus(p, origin)) for p in t]
     if not min(side) < 0 < max(side):
         return None
@@ -367,7 +366,8 @@ def crosses(a, b):
 
 
 def promised(card, a, b, label, kind=None):
-    """Whether the documentation promises the right answer about two triangles. kind: of a pair of the suite."""
+    """Whether the documentation promises the right answer about two triangles. label: whether they collide. kind: the kind
+    of contact if they are a pair of the suite."""
     if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not (proper(a) and proper(b)):
         return False
     if label and card['means'] == 'crossing':
@@ -378,7 +378,7 @@ def promised(card, a, b, label, kind=None):
 # ---- the suite
 
 class Suite:
-    """The files that suite.txt names, read after their sums were compared."""
+    """The files that suite.txt names. A file is used only if its sum is the one in suite.txt."""
 
     def __init__(self, folder):
         self.folder = os.path.abspath(folder)
@@ -399,7 +399,7 @@ class Suite:
             return file.read()
 
     def text(self, name):
-        """The text of a file; its sum has to be that of suite.txt."""
+        """The text of a file. Raises Wrong if its sum is not that of suite.txt."""
         text = self.read(name)
         if hashlib.sha256(text.encode()).hexdigest() != self.files.get(name):
             raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
@@ -426,7 +426,7 @@ class Suite:
         return dict(line.split(' ', 1) for line in self.text(name + '/mesh.txt').split('\n') if line)
 
     def objects(self, name):
-        """The objects of a mesh: their paths in the suite, and of each the corners and the vertices of its triangles."""
+        """The objects of a mesh: their paths in the suite, and for each triangle its corners by index and by position."""
         paths = sorted((path for path in self.files if os.path.dirname(path) == name and path.endswith('.obj')),
                        key=lambda path: int(os.path.basename(path)[:-4]))
         objects = []
@@ -482,8 +482,8 @@ def questions_of(kind, family, suite, lines):
 
 
 def lists_of(card, suite, kinds):
-    """The kind and the lines of each list of pairs, and of all questions of each other kind: they are few, and starting a
-    process takes longer than most."""
+    """Kinds with lines that one process is asked about: each list of pairs; and all questions of each other kind together,
+    since they are few, and starting a process takes longer than most of them."""
     for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
     families = {}  # of questions about meshes, each of which has a list
@@ -495,8 +495,8 @@ def lists_of(card, suite, kinds):
 
 
 def is_scored(card, one):
-    """Whether the right answer is known, and one that the documentation may mean: whether a point of the surface (parameter 2:
-    at a vertex) is inside is a matter of words, except for methods that promise the answer of docs/suite.md."""
+    """Whether the right answer is known, and the documentation means the same. Libraries may call a point of the surface
+    (parameter 2: at a vertex) inside or not; only methods that promise the answer of docs/suite.md are scored there."""
     return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
 
 
@@ -521,13 +521,17 @@ def score_distance(label, numbers, value, row):
         row['zero'] += distance == 0
         row['not zero'] += distance > 0 == high
         row['negative'] += distance < 0
-        if distance > 0 and high > 0:  # low is 0 if the distance is below all doubles
+        if distance > 0 and high > 0:  # low is 0 if the distance is below the smallest double above 0
             row['off'] += error / (low or high) > OFF
             row.worst = max(row.worst, error / (low or high))
     triangles = [corners_of(numbers), corners_of(numbers[9:])]
     size = max(max(axis) - min(axis) for triangle in triangles for axis in zip(*triangle))
-    near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)  # or as near as doubles are
     if points:
+        def exact(corners):
+            return [[Fraction(x) for x in corner] for corner in corners]
+
+        # How far a point may be off: a part of the size, but at least the distance of neighbouring doubles.
+        near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)
         points = exact([points[:3], points[3:]])
         # Both points may be off by `near`, the distance by OFF. Points that are near their triangles are never too close.
         most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
@@ -553,7 +557,7 @@ def score_mesh(card, objects, rows, reported, row):
 
 
 def ask_family(command, card, suite, names, options):
-    """A row for each mesh of a family; one process is asked about all."""
+    """A row for each mesh of a family. One process is asked about all meshes."""
     objects, questions = [], []
     for name in names:
         paths, of = suite.objects(name)
@@ -571,7 +575,7 @@ def ask_family(command, card, suite, names, options):
 
 
 def rows_of(command, card, suite, kinds, options):
-    """A row for each kind of question, family, parameter and label (of a mesh its name)."""
+    """A row for each kind of question, family, parameter and label; for meshes, the name is in place of the label."""
     rows = {}
     for kind, listed in lists_of(card, suite, kinds):
         answers, differs = ask_twice(command, [one.question for one in listed], options)
@@ -599,19 +603,18 @@ TITLES = {'pair': 'pairs of triangles: do they meet?', 'mesh': 'meshes: which tr
           'self': 'meshes: do they meet themselves?', 'inside': 'points: are they inside?', 'clash': 'solids: do their insides meet?'}
 
 
-def cells_of(kind, name, row):
-    return [name, *(f'{row[column]:,}' for column in COLUMNS[kind]), *([f'{row.worst:.1e}'] if kind == 'distance' else []),
-            *(f'{row[word]:,}' for word in OUTCOMES), f"{row['ns'] / max(row['answered'], 1) / 1e3:,.1f}"]
-
-
 def table_of(kind, rows):
     """The rows of one kind of question, by family, and their sum, as aligned text."""
+    def cells_of(name, row):
+        return [name, *(f'{row[column]:,}' for column in COLUMNS[kind]), *([f'{row.worst:.1e}'] if kind == 'distance' else []),
+                *(f'{row[word]:,}' for word in OUTCOMES), f"{row['ns'] / max(row['answered'], 1) / 1e3:,.1f}"]
+
     total = Row()
     for row in rows.values():
         total.add(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
-    lines = [head] + [cells_of(kind, name, row) for name, row in [*rows.items(), ('all', total)]]
-    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # without outcomes that never came
+    lines = [head] + [cells_of(name, row) for name, row in [*rows.items(), ('all', total)]]
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for outcomes that never came
     widths = [max(len(line[i]) for line in lines) for i in kept]
     text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
                      for line in lines)
@@ -628,7 +631,7 @@ def write_csv(path, name, rows):
                 writer.writerow([name, kind, family, *(row[column] for column in columns), row.worst, int(row['ns']), row.reason])
 
 
-# Of a row, what `--json` writes, by the names in the file. `answered` counts answers whose label is known.
+# The counts of a row that `--json` writes, by their names in the JSON. `answered` counts only answers whose label is known.
 SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'own missed', 'own wrong', 'refused', 'unanswered',
                                     'crashed', 'hung', 'no memory', 'not asked', 'twice')},
          'answered': 'scored', 'differing': 'differs', 'timed': 'answered',
@@ -636,15 +639,15 @@ SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'ow
 
 
 def as_json(card, rows):
-    """What the study `libraries` keeps of one kind of question (experiments/studies/libraries.cpp): the card, the sums of all
+    """What the study `libraries` (experiments/studies/libraries.cpp) keeps of one kind of question: the card, the sums of all
     rows, and the rows."""
     total, scores = Row(), []
     for (kind, family, parameter, label), row in rows.items():
-        if kind == 'mesh':  # its colliding pairs are what counts
+        if kind == 'mesh':  # colliding pairs are counted in place of questions
             row['asked'] = row['scored'] = row['colliding']
         if kind == 'distance':
             row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
-            row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # points are no part of the answer of others
+            row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # other libraries do not promise points
         total.add(row)
         folder = {'pair': 'pairs', 'mesh': 'meshes'}.get(kind, kind)
         scores.append([f'{folder}/{family}', parameter, label if kind == 'pair' else kind,
@@ -677,7 +680,7 @@ def measure(command, options):
 # ---- the check of a program's grammar
 
 def check(command, options):
-    """Asks a few questions of every kind; prints each with what came. Status 1: something broke the protocol."""
+    """Asks a few questions of every kind, and prints each with the answer. Returns 1 if something broke the protocol."""
     near, far = '0 0 0 4 0 0 0 4 0 1 1 -1 1 1 1 2 2 1', '0 0 0 4 0 0 0 4 0 0 0 1 4 0 1 0 4 1'
     faces = '1 3 2 2 3 4 5 6 7 6 8 7 1 2 5 2 6 5 3 7 4 4 7 8 1 5 3 3 5 7 2 4 6 4 8 6'.split()
     with tempfile.TemporaryDirectory() as folder:

@@ -167,8 +167,7 @@ def fill(chapter, study):
     forms = forms_table(chapter, rows)
     add_sizes(chapter, rows)
     add_sums(chapter, rows)
-    add_gaps(chapter, study)
     if len(rows):
-        chapter.figures = [figure for figure in (missed_figure(rows), kept_figure(rows)) if figure.panels]
+        chapter.figures = [missed_figure(rows), kept_figure(rows)]
         chapter.tables = [forms]
         chapter.pictures = pictures_of(rows)

@@ -2,12 +2,11 @@
 from frame import *  # noqa: F403
 
 
-def stiffness_of(scene):
-    return (scene.split(":") + ["", ""])[2]
-
-
 def courses_of(study):
     """For each stiffness: the rows of boxes by frame, those of FAR, and the number of frames in the grid."""
+    def stiffness_of(scene):
+        return (scene.split(":") + ["", ""])[2]
+
     stiffness = study.rows.scene.map(stiffness_of)
     wanted = study.points[study.points.method == "boxes"].scene.map(stiffness_of).value_counts()
     out = {}
@@ -19,15 +18,10 @@ def courses_of(study):
 
 
 def gains(pairs):
-    """The joules by which the total energy of a frame exceeds the sum of the previous frame's energy and the work of
-    the forces that its step left unbalanced; for each frame whose previous frame is there."""
+    """For each frame whose previous frame is there: its total energy, less that of the previous frame and less the work of
+    the forces that its step left unbalanced, in joules."""
     rise = column(pairs, "total").diff() - column(pairs, "slack")
     return list(rise[pairs.frame.diff() == 1])
-
-
-def percentile(values, part):
-    """The percentile of the values by nearest rank; part: 0 to 1."""
-    return sorted(values)[max(math.ceil(part * len(values)), 1) - 1]
 
 
 def over_frames(name, rows, count, style="lines", emphasis=False):
@@ -39,8 +33,7 @@ def figure_of(courses):
                  "Energy: kinetic energy and all potentials, where 0 is a cloth at rest at the height of the middle of "
                  "the sphere. Then, for each stiffness, the pairs that collide, neighbours among them, and the "
                  "candidates that culling leaves to exact predicates. Most candidates are neighbours, which both "
-                 "methods hand to the "
-                 "predicates: a triangle of the grid shares a vertex with twelve others. n = "
+                 "methods hand to the predicates: a triangle of the grid shares a vertex with twelve others. n = "
                  f"{counted(len(courses), 'simulation', 'simulations')}, one of each stiffness.")
     for title, label, count, low in (("total energy", "J", "total", None),
                                      ("work of a step", "factorizations", "iterations", 0)):
@@ -67,7 +60,7 @@ def table_of(courses):
         colliding = column(pairs, "colliding").fillna(0)
         out.rows.append([
             name, grouped(len(pairs)), grouped(wanted), grouped(len(pairs) - len(where_true(pairs, "converged"))),
-            rounded(median(iterations)), rounded(percentile(iterations, 0.95)), rounded(iterations.max()),
+            rounded(median(iterations)), rounded(np.quantile(iterations, 0.95, method="inverted_cdf")), rounded(iterations.max()),
             f"{column(pairs, 'residual').fillna(0).max():.2g}", rounded(energy.iloc[0]), rounded(energy.iloc[-1]),
             grouped((colliding > 0).sum()), rounded(colliding.max(), 6),
             *(grouped(total(pairs, count) + total(far, count)) for count in ("accounted", "missed")),
@@ -88,15 +81,15 @@ def add_energy(chapter, name, pairs):
 
 
 def culled_pairs(rows):
-    """Of the pairs whose boxes overlap and that are no neighbours, the per cent that culling took away. No method takes
-    neighbours away. All pairs were accounted for: what was not kept and has overlapping boxes was proved apart."""
+    """The per cent of pairs that culling took away, of pairs with overlapping boxes that are no neighbours. No method takes
+    neighbours away. The accounting proved that each pair with overlapping boxes that was not kept is apart."""
     removed = total(rows, "by_predicates")
     left = total(rows, "candidates") - total(rows, "neighbour_candidates")
     return share(removed, removed + left)
 
 
 def add_power(chapter, rows, name, pairs, far):
-    """Adds what each method culled of one stiffness, and how many pairs were at risk in the frames that FAR looked at."""
+    """Adds what each method culled at one stiffness, and how many pairs were at risk in the frames of FAR."""
     words = []
     for method, of in (("FAR", far), ("Boxes", pairs)):
         if column(of, "views_used").sum() > 0:
@@ -139,6 +132,5 @@ def fill(chapter, study):
     for name, (pairs, _, wanted) in courses.items():
         if len(pairs) != wanted:
             chapter.find(f"At {name} N/m {grouped(len(pairs))} of {wanted} frames have been run.")
-    add_gaps(chapter, study)
     if courses:
         chapter.figures, chapter.tables = [figure_of(courses)], [table_of(courses)]

@@ -50,6 +50,5 @@ def fill(chapter, study):
     scenes = {scene: {row.way: row for row in of.itertuples()} for scene, of in by(rows, "scene")}
     add_promises(chapter, study)
     add_join(chapter, scenes)
-    add_gaps(chapter, study)
     if len(rows):
         chapter.tables = [table_of(scenes)]

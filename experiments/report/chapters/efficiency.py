@@ -8,8 +8,8 @@ NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidate
 
 
 def frames_of(rows):
-    """The rows of a scene with a line for each frame and the columns (name, method); NaN: there is none. The column
-    (there, method) tells whether there is a row."""
+    """A line for each frame of a scene, with columns (name, method); NaN if there is no such value. The column (there,
+    method) tells whether there is a row."""
     rows = rows.assign(there=1.0)
     rows = rows.assign(**{name: column(rows, name) for name in NAMES})
     wide = rows.groupby(["frame", "contestant"])[NAMES].last().unstack()
@@ -100,6 +100,5 @@ def fill(chapter, study):
     add_factors(chapter, scenes)
     add_missed(chapter, study.rows)
     add_quick(chapter, scenes)
-    add_gaps(chapter, study)
     if scenes:
         chapter.figures, chapter.tables = [figure_of(scenes)], [table_of(scenes)]

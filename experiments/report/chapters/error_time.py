@@ -33,10 +33,6 @@ class Entry:
     def words(self):
         return self.name + (f" at {self.pixels} px" if self.pixels > 0 else "")
 
-    @property
-    def error_share(self):
-        return share(self.error, self.colliding)
-
 
 @dataclass
 class Group:
@@ -64,12 +60,6 @@ class Group:
         """The reference for times: boxes and exact tests, without culling."""
         return next((e for e in self.entries if e.row.method == "exact"), None)
 
-    def by_name(self):
-        out = {}
-        for entry in self.entries:
-            out.setdefault(entry.name, []).append(entry)
-        return out
-
 
 def entry_of(rows):
     first = next(rows.itertuples())
@@ -79,24 +69,16 @@ def entry_of(rows):
                  first.rounds if one else ())
 
 
-def kind_of(scene):
-    """scene: the entry of the program for it."""
-    return "scan" if scene.get("needs_meshes") else "smooth" if scene and "seed" not in scene else ""
-
-
 def groups_of(rows, scenes):
     out = []
     for name, here in by(rows.assign(group=rows.scene.map(scene_base)), "group"):
         seeds = here.scene.nunique()
         timed = here[column(here, "total_ms").notna()]
-        parts = timed.groupby(["contestant", "resolution"], sort=False) if len(timed) else []
-        out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds],
-                         kind_of(scenes.get(name.split(":")[0], {}))))
+        known = scenes.get(name.split(":")[0], {})  # the entry of the program for the scene
+        kind = "scan" if known.get("needs_meshes") else "smooth" if known and "seed" not in known else ""
+        parts = by(timed, ["contestant", "resolution"])
+        out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds], kind))
     return out
-
-
-def times_as_long(entry, other):
-    return estimate_text(ratio_estimate(entry.rounds, other.rounds))
 
 
 def sample_of(groups):
@@ -110,8 +92,8 @@ def sample_of(groups):
 # ---- figures
 
 def cloud(name, points):
-    """Points of triples: an Estimate of the time, y, and the resolution. A line follows the resolution; a method that
-    chooses its resolution is no point of a line."""
+    """A Series of points; each is an Estimate of the time, y, and the resolution. A line connects the resolutions of a
+    method. A point without a resolution is not connected."""
     out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points",
                  emphasis=name in OURS)
     for time, y, pixels in points:
@@ -133,8 +115,8 @@ def geometric_mean(values):
 
 
 def summary_of(groups):
-    """Points by the name of a method, over all scenes on which FAR was measured and of those that were measured on
-    each: the geometric mean of the times as multiples of those of `exact`, and the share of the errors."""
+    """Points by the name of a method, for methods that were measured on every scene of FAR: the geometric mean of the times
+    as multiples of those of `exact`, and the share of the errors."""
     groups = [g for g in groups if g.yardstick() and any(e.name == OURS[0] for e in g.entries)]
     found, out = [{(e.name, e.pixels): e for e in group.entries} for group in groups], {}
     for key in (key for key in (found[0] if len(found) > 1 else ()) if all(key in of for of in found)):
@@ -145,16 +127,9 @@ def summary_of(groups):
     return out, [group.name for group in groups]
 
 
-def row_name(name, pixels, shown):
-    """The row of the strip that holds the point; "" for resolutions that are left to the table."""
-    if name == "FAR (OBB)" and pixels > 0:
-        return f"{name}, {pixels} px" if pixels in shown else ""
-    return name
-
-
 def error_panels(titles, labels, all_points):
-    """For each scene a panel: methods that were wrong anywhere in it as points; the others as rows of the strip,
-    which are the same in each panel. all_points: for each panel, points by the name of a method."""
+    """A panel for each scene. Methods that were wrong anywhere in it are points; the others are rows of the strip. The
+    rows are the same in each panel. all_points: for each panel, points by the name of a method."""
     shown = sorted({pixels for points in all_points for of in points.values() for *_, pixels in of if pixels > 0})[::2]
     panels, strips = [], []
     for title, label, points in zip(titles, labels, all_points):
@@ -163,8 +138,12 @@ def error_panels(titles, labels, all_points):
             wrong = any(y > 0 for _, y, _ in of)
             name = name.removeprefix("S-").replace(", " + STRICT, " (strict)")
             for point in of:
-                at = row_name(name, point[2], shown) if not wrong else OWN_TESTS if name[:3] in ("fcl", "ode") else name
-                ((above if wrong else rows).setdefault(at, []) if at else []).append(point)
+                at = OWN_TESTS if wrong and name[:3] in ("fcl", "ode") else name
+                if not wrong and name == "FAR (OBB)" and point[2] > 0:
+                    if point[2] not in shown:
+                        continue  # other resolutions are only in the table
+                    at = f"{name}, {point[2]} px"
+                (above if wrong else rows).setdefault(at, []).append(point)
         panels.append(Panel(title, log(label), log("errors (%)", zero=True), [cloud(*of) for of in above.items()]))
         strips.append(rows)
     fastest = {name: min(time.value for strip in strips for time, *_ in strip.get(name, ()))
@@ -178,8 +157,11 @@ def error_panels(titles, labels, all_points):
 
 def figure_of(groups):
     shown, sample = groups[:MOST_SCENES], sample_of(groups)
-    points = [{name: [(e.median, e.error_share, e.pixels) for e in of] for name, of in group.by_name().items()}
-              for group in shown]
+    points = []
+    for group in shown:
+        points.append({})
+        for e in group.entries:
+            points[-1].setdefault(e.name, []).append((e.median, share(e.error, e.colliding), e.pixels))
     titles, labels = [group.title for group in shown], ["time (ms)"] * len(shown)
     summary, scenes = summary_of(shown)
     if summary:
@@ -210,8 +192,8 @@ def front_table(groups):
                 columns(["scene", "method"], ["ms", "time over that of exact", "missed", "wrong", "colliding"]))
     for group in groups:
         peer = group.yardstick()
-        out.rows += [[group.name, e.words, rounded(e.ms), times_as_long(e, peer) if peer else "-", grouped(e.missed),
-                      grouped(e.wrong), grouped(e.colliding)] for e in group.front()]
+        out.rows += [[group.name, e.words, rounded(e.ms), estimate_text(peer and ratio_estimate(e.rounds, peer.rounds)),
+                      grouped(e.missed), grouped(e.wrong), grouped(e.colliding)] for e in group.front()]
     return out
 
 
@@ -273,7 +255,6 @@ def fill(chapter, study):
         if len(of):
             chapter.find(f"{name} misses {of_rows(of, 'missed', 'colliding')} colliding pairs and reports "
                          f"{grouped(total(of, 'wrong'))} that do not collide, in {grouped(len(of))} scenes.")
-    add_gaps(chapter, study)
     if groups:
         chapter.figures = [figure_of(groups)]
-        chapter.tables = [table for table in (front_table(groups), equal_table(groups)) if table.rows]
+        chapter.tables = [front_table(groups), equal_table(groups)]

@@ -49,7 +49,6 @@ def fill(chapter, study):
     add_broken(chapter, promising(study.rows))
     scenes = {scene: {NAMES.get(row.contestant, row.contestant): row for row in rows.itertuples()}
               for scene, rows in by(study.rows, "scene")}
-    add_gaps(chapter, study)
     if not scenes:
         return
     chapter.figures, chapter.tables = [figure_of(scenes, study.rows.resolution.max())], [table_of(scenes)]

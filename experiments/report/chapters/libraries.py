@@ -7,7 +7,7 @@ import csv
 import os
 
 from frame import *  # noqa: F403: a chapter uses most of it
-from tables import table_csv
+from pages import table_csv
 
 # The counts of a part of a row, in the order of experiments/suite/ask.py (SCORE).
 SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered", "crashed", "hung",
@@ -45,11 +45,6 @@ def with_families(rows):
     return pd.DataFrame(out, columns=["method", "family", "asks", "parts", "promises", *CARD, *SCORE, "worst", "total_ms"])
 
 
-def meshes_of(rows):
-    """How many meshes the rows have, each with a part of its own."""
-    return sum(map(len, rows.parts))
-
-
 def totals(rows, *names):
     return sum(total(rows, name) for name in names)
 
@@ -70,24 +65,12 @@ def differing(rows):
 
 
 def answers(rows, pairs, own):
-    """Missed pairs and false alarms among the answers, each with the number that it is a part of: for pairs all
-    answers; for meshes the colliding and the reported pairs, since nobody knows how many pairs are apart. own: only
-    where the contestant's documentation promises the answer."""
+    """Missed pairs, of how many, false alarms, of how many. For pairs the wholes are all answers; for meshes they are the
+    colliding and the reported pairs, since nobody counts the pairs that are apart. own: only answers that the contestant's
+    documentation promises."""
     asked, missed, false = (total(rows, name) for name in (
         ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
     return missed, asked, false, asked if pairs else asked - missed + false
-
-
-def parts_of(rows):
-    """The parts of the rows, by contestant, parameter and kind of contact."""
-    return pd.DataFrame([{"contestant": row.method, **part} for row in rows.itertuples() for part in row.parts],
-                        columns=["contestant", "parameter", "kind", *SCORE])
-
-
-def rates_of_kinds(rows):
-    """Wrong answers per million by contestant and kind."""
-    sums = parts_of(rows).drop(columns="parameter").groupby(["contestant", "kind"]).sum()
-    return {row.Index: per_million(row.missed + row.wrong, row.answered) for row in sums.itertuples()}
 
 
 # ---- tables
@@ -126,7 +109,10 @@ def overview(rows, pairs):
 
 
 def kinds_table(rows):
-    rates = rates_of_kinds(rows)
+    parts = pd.DataFrame([{"contestant": row.method, **part} for row in rows.itertuples() for part in row.parts],
+                         columns=["contestant", "kind", *SCORE])
+    rates = {row.Index: per_million(row.missed + row.wrong, row.answered)
+             for row in parts.groupby(["contestant", "kind"]).sum().itertuples()}
     return Table(
         "libraries-kinds",
         "Wrong answers (missed or false alarms) per million answers about pairs of each kind of contact, degenerate "
@@ -230,11 +216,10 @@ def time_figure(rows):
     out, points = Figure(
         "libraries-time", "Wrong answers where the documentation promises the answer, and the time of a question",
         "Each row is a contestant, with the fewest wrong answers first; (ours) marks the methods of farcull. "
-        "Missed: the triangles meet, and it says apart; false alarms: the other way round. Both are per million answers to questions of which its documentation promises the "
-        "answer; what was refused or crashed is no answer, and stands in the table. Time: the mean of a question about "
+        "Missed: the triangles meet, and it says apart; false alarms: the other way round. Both are per million answers to "
+        "questions of which its documentation promises the answer; what was refused or crashed is no answer, and stands in the table. Time: the mean of a question about "
         "two triangles, as the contestant's own process measured it. It includes what the call needs, such as the "
-        "making of a mesh of one triangle, so that what is made for meshes "
-        f"looks slow. n = {grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
+        f"making of a mesh of one triangle, so that what is made for meshes looks slow. n = {grouped(total(rows, 'asked'))} questions to {rows.method.nunique()} contestants."), []
     for name, of in by(rows, "method"):
         ms, timed, (missed, asked, wrong, _) = column(of, "total_ms").sum(), total(of, "timed"), answers(of, True, True)
         if asked and timed:
@@ -260,7 +245,7 @@ def add_ours(chapter, rows):
         of_questions = of[~of.asks.isin(["pairs", "meshes"])]
         missed, asked, wrong, _ = answers(of_pairs, True, False)
         lost, known, false, reported = answers(of_meshes, False, False)
-        many = counted(meshes_of(of_meshes), "mesh", "meshes")
+        many = counted(sum(map(len, of_meshes.parts)), "mesh", "meshes")  # each mesh is a part
         off = totals(of_questions, "missed", "wrong")
         for bad, what in ((missed, f"of {grouped(asked)} pairs missed"),
                           (wrong, f"of {grouped(asked)} pairs reported wrongly"),
@@ -273,7 +258,7 @@ def add_ours(chapter, rows):
             chapter.find_broken(f"{name} has no answer to {counted(silent, 'question', 'questions')}.")
         if not missed + wrong + lost + false + off + silent:
             kept.append(name)
-            pairs, colliding, meshes = pairs + [asked], colliding + [known], meshes + [meshes_of(of_meshes)]
+            pairs, colliding, meshes = pairs + [asked], colliding + [known], meshes + [sum(map(len, of_meshes.parts))]
             questions += total(of_questions, "answered")
     if any(pairs) or any(colliding) or questions:
         def most(counts, one, many):
@@ -308,14 +293,8 @@ def add_others(chapter, rows, asks):
         chapter.find(f"Of {what}, {'; '.join(parts)}.")
 
 
-def add_file(chapter, table):
-    """A table that is too wide for the page."""
-    chapter.files[f"tables/{table.name}.csv"] = table_csv(table)
-
-
 def fill(chapter, study):
     rows = with_families(study.rows)
-    add_gaps(chapter, study)
     if rows.empty:
         return
     pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
@@ -329,10 +308,10 @@ def fill(chapter, study):
     files = [calls_table(rows), families_table(rows[rows.asks.isin(["pairs", "meshes"])])]
     if len(pairs):
         files += [overview(pairs, True), kinds_table(pairs)]
-        chapter.figures = [figure for figure in [time_figure(pairs)] if figure.panels]
+        chapter.figures = [time_figure(pairs)]
     if len(meshes):
         files.append(overview(meshes, False))
     if len(distances):
         files.append(questions_table(distances))
-    for table in files:
-        add_file(chapter, table)
+    for table in files:  # too wide for the page
+        chapter.files[f"tables/{table.name}.csv"] = table_csv(table)

@@ -11,7 +11,7 @@ WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
 
 
 def way_of(row):
-    """The method and its form; of FAR the offset and the factor on the radius."""
+    """The method with its form; FAR with the offset and the factor on the radius."""
     if row.method != "far":
         return WAYS.get(row.method, row.method)
     offset = {"obb": "boxes", "exact": "exact offsets"}[row.offset]
@@ -121,19 +121,16 @@ def add_worst(chapter, rows):
     if not len(off):
         chapter.find(f"No point with {FEWEST} missed pairs or more is off by more than a factor of {FACTOR}.")
         return
-    def told(row):
-        return f"{row.resolution} px: {rounded(row.expected)} predicted, {rounded(row.measured)} missed"
-
-    worst = [f"{way} on {scene} ({listed([told(row) for row in of.head(2).itertuples()])})"
-             for (way, scene), of in off.groupby(["way", "scene"], sort=False)]
+    worst = [f"{way} on {scene} (" + listed(
+        f"{row.resolution} px: {rounded(row.expected)} predicted, {rounded(row.measured)} missed"
+        for row in of.head(2).itertuples()) + ")" for (way, scene), of in by(off, ["way", "scene"])]
     chapter.find(f"The model is off by more on {counted(len(worst), 'scene', 'scenes')} with a method, such as "
                  f"{listed(worst[:5])}.")
 
 
 def fill(chapter, study):
     if not len(study.rows):
-        add_gaps(chapter, study)
-        return
+            return
     rows = with_means(study.rows)
     for held, scenes in ((True, "other scenes and seeds than those that the formula was found on"),
                          (False, "scenes that were looked at while it was found")):
@@ -141,6 +138,5 @@ def fill(chapter, study):
         add_share(chapter, of[of.method != "far"], f"CULLIDE and Quick-CULLIDE, {scenes}")
         add_share(chapter, of[of.method == "far"], f"FAR without fattening and below its radius, {scenes}")
     add_worst(chapter, rows)
-    add_gaps(chapter, study)
-    chapter.figures = [figure for figure in (figure_of(rows), resolution_figure(rows)) if figure.panels]
+    chapter.figures = [figure_of(rows), resolution_figure(rows)]
     chapter.tables = [table_of(rows)]

@@ -71,6 +71,5 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_order(chapter, rows)
     add_comparison(chapter, rows, EXACT, BOX)
-    add_gaps(chapter, study)
     if len(rows):
         chapter.figures, chapter.tables = [figure_of(rows)], [table_of(rows)]

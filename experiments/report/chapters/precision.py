@@ -20,19 +20,14 @@ def with_axes(rows):
         generator=[w[1] for w in words], depth=[float(w[3]) for w in words])
 
 
-def grouped_by(rows, names):
-    """Pairs of the values of columns, ascending, and their rows."""
-    return list(rows.groupby(names)) if len(rows) else []
-
-
 def most(rows, name):
     """The largest distance; infinite if that of a row is not a number."""
     return max(0.0, column(rows, name).fillna(math.inf).max())
 
 
 def drawn(rows):
-    """The value to draw. If only pixels without a sample are violated, there is no distance, and so no point of a line:
-    the line of zeros would hide the violations."""
+    """The value to draw. If all violations are pixels without a sample, there is no distance. Then no point is drawn, since
+    a point at zero would hide the violations."""
     steps = most(rows, "largest_steps")
     return NONE if steps == 0 and total(rows, "no_sample") else steps
 
@@ -42,12 +37,12 @@ def figure_of(rows, rounding):
                  f"The largest violation over all generators, n = {grouped(total(rows, 'points'))} points of "
                  "triangles. At 0 no sample is outside. Up to the mark a monotone rounding explains it, which the "
                  "theorem allows. A point whose pixel has no sample has no distance; the table counts these.")
-    for (bits, side), here in grouped_by(rows, ["bits", "resolution"]):
+    for (bits, side), here in groups(rows, ["bits", "resolution"]):
         rounding = {**rounding, "16": ROUNDING_16}
         panel = Panel(f"{bits}, {side} px", log("depth of the scene (px)"), log("outside (depth steps)", zero=True),
                       marks=[Mark(rounding[bits[:2]], "rounding of the map", vertical=False)])
-        for line, of in sorted(grouped_by(here, "line"), key=lambda pair: pair[0] != OURS):
-            depths = grouped_by(of, "depth")
+        for line, of in sorted(groups(here, "line"), key=lambda pair: pair[0] != OURS):
+            depths = groups(of, "depth")
             panel.series.append(Series(line, [d for d, _ in depths], [drawn(cell) for _, cell in depths],
                                        emphasis=line == OURS))
         out.panels.append(panel)
@@ -60,7 +55,7 @@ def table_of(rows):
                  columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)",
                                                   "most (px)"]),
                  [[*key, *(grouped(total(of, name)) for name in COUNTS), rounded(most(of, "largest_steps")),
-                   rounded(most(of, "largest_px"))] for key, of in grouped_by(rows, ["line", "bits"])])
+                   rounded(most(of, "largest_px"))] for key, of in groups(rows, ["line", "bits"])])
 
 
 def add_violations(chapter, rows):
@@ -75,8 +70,8 @@ def add_violations(chapter, rows):
 
 
 def add_deep_windows(chapter, rows):
-    """Adds what holds where a step of the buffer is longer than the chord of the ball at the corner of a pixel: there
-    the depths of a whole contact are one number in the buffer."""
+    """Adds the violations in deep windows: where a step of the buffer is longer than the chord of the ball at the corner of
+    a pixel, so that the buffer has one number for all depths of a contact."""
     ours = rows[rows.line == OURS]
     chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
     step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # a step of 2^-16, not of 2^-24
@@ -93,7 +88,6 @@ def fill(chapter, study):
     add_promises(chapter, study)
     add_violations(chapter, rows)
     add_deep_windows(chapter, rows)
-    add_gaps(chapter, study)
     if len(rows):
         chapter.figures = [figure_of(rows, study.constants["depth_rounding"])]
         chapter.tables = [table_of(rows)]

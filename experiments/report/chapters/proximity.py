@@ -16,8 +16,8 @@ SUMS = ["with_nearest", "missed", "set_triangles"]
 
 
 def with_names(rows):
-    """The rows with the columns name (of the method), base (the scene without its seed), sets (else distances), and
-    counts (whether the row is of the plot over the number of objects)."""
+    """The rows with the columns name (of the method), base (the scene without its seed), sets (whether the row is about
+    sets; else about distances), and counts (whether it belongs to the plot over the number of objects)."""
     return rows.assign(
         name=[NAMES.get(method, method.split(" ")[0]) for method in rows.method],
         base=[scene_base(scene) for scene in rows.scene], sets=~rows.method.str.contains(" (?:nearest|objects)$"),
@@ -26,8 +26,8 @@ def with_names(rows):
 
 
 class SetScene:
-    """The rows of a scene, summed over its seeds by method and `at`, the resolution or frame. `missed` counts what
-    a method lost, among the objects that have a nearest neighbour."""
+    """The rows of a scene, summed over its seeds, by method and `at`, the resolution or frame. `missed`: objects that lost
+    their nearest neighbour."""
 
     def __init__(self, base, rows, at):
         rows = rows.assign(**{name: column(rows, name) for name in SUMS})
@@ -41,7 +41,7 @@ class SetScene:
         return self.sums.at[(method, at), what] if (method, at) in self.sums.index else NONE
 
     def factor(self, method, at, at_boxes):
-        """How many times more triangles the boxes leave than the method; NaN if one of both is missing."""
+        """How many times more triangles the boxes leave than the method; NaN if one of the two is missing."""
         kept = self.value(method, at, "set_triangles")
         return self.value(BOXES, at_boxes, "set_triangles") / kept if kept else NONE
 
@@ -99,14 +99,12 @@ def add_kept_promises(chapter, all_rows):
 
 # ---- sets: what is lost, and sizes
 
-def lost_series(scene, method):
-    of = scene.of(method)
-    of = of[of.with_nearest > 0]
-    return Series(method, list(of.index), [share(row.missed, row.with_nearest) for row in of.itertuples()],
-                  emphasis=method == RELIABLE)
-
-
 def lost_figure(scenes):
+    def lost_series(scene, method):
+        of = scene.of(method)
+        of = of[of.with_nearest > 0]
+        return Series(method, list(of.index), list(100 * of.missed / of.with_nearest), emphasis=method == RELIABLE)
+
     scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
     return Figure(
         "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
@@ -227,11 +225,7 @@ def fill(chapter, study):
     sizes = sorted({cells for scene in rest for _, cells in scene.sums.index if cells > 0})
     add_kept_promises(chapter, rows)
     add_sets(chapter, rest, sizes)
-    add_gaps(chapter, study)
     exponents = exponents_table("proximity-exponents", "the number of objects")
-    figures = [lost_figure(rest), size_figure(rest),
-               count_figure(rows, exponents), error_figure(apart)]
-    tables = [lost_table(rest, sizes), efficiency_table(rest, moving, max(sizes, default=0)), exponents,
-              distance_table(apart)]
-    chapter.figures = [figure for figure in figures if figure.panels]
-    chapter.tables = [table for table in tables if table.rows]
+    chapter.figures = [lost_figure(rest), size_figure(rest), count_figure(rows, exponents), error_figure(apart)]
+    chapter.tables = [lost_table(rest, sizes), efficiency_table(rest, moving, max(sizes, default=0)), exponents,
+                      distance_table(apart)]

@@ -7,8 +7,8 @@ SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
 
 
 def with_axes(rows):
-    """Rows with the radius over the budget radius (NaN where a row of a published radius lacks one of the two), and
-    with the canvas and the depth that it was tested with."""
+    """Rows with `factor`, the radius over the budget radius (NaN if a row of a published radius lacks one of them), and
+    with `surface`, the canvas or depth that the radius was tested with."""
     at = ["scene", "method", "depth_mode", "resolution"]
     radius = rows.assign(px=column(rows, "radius_px"))
     budgets = radius[radius.radius == "budget"].drop_duplicates(at).set_index(at).px
@@ -19,10 +19,6 @@ def with_axes(rows):
         factor=[over[i] if r == "published" else 1.0 if r in ("", "budget") else float(r)
                 for i, r in rows.radius.items()],
         surface=[SURFACES.get(m) or SURFACES.get(d, "fragment depth") for m, d in zip(rows.method, rows.depth_mode)])
-
-
-def groups(rows, name):
-    return list(rows.groupby(name)) if len(rows) else []
 
 
 def shares(rows, by, part, whole):
@@ -106,9 +102,9 @@ def lemma_table(lemmas):
 
 
 def add_lemmas(chapter, lemmas):
-    """Adds violations of the lemmas at the budget radius and beyond, and at the published radius. With fragment depth the
-    lemmas are proved, so a violation breaks a promise even if its row promises nothing. Rows for which breaks() holds are
-    reported already."""
+    """Adds violations of the lemmas at the budget radius and above, and at the published radius. With fragment depth the
+    lemmas are proved, so a violation breaks a promise even if its row promises nothing. add_promises() has reported rows
+    for which breaks() is true."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")
@@ -163,7 +159,7 @@ def add_headline(chapter, runs, placements):
         chapter.find("On scenes that were not constructed against it, the published radius missed "
                      f"{missed_of(natural)} colliding pairs in "
                      f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
-        # A radius that misses nothing where no smaller one misses anything says nothing.
+        # If smaller radii miss nothing either, these scenes say nothing about the radius.
         smaller = runs[(runs.factor == 0.9) & (runs.depth_mode == "fragment")]
         bare = runs[(runs.factor == 0) & (runs.depth_mode == "fragment")]
         if len(smaller) and len(bare):
@@ -206,11 +202,6 @@ def placement_figure(placements):
         "measured with other bits and resolutions is in the table.", [panel] if panel.series else [])
 
 
-def cell_of(rate):
-    """rate_text() without the words that the caption has."""
-    return rate.replace(", 95 % interval ", "; ").replace("95 % bound: ", "")
-
-
 def placement_table(placements):
     out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
                 "collides, of both kinds of patches and of contacts together. In brackets the rate with its 95 % interval, or "
@@ -220,7 +211,8 @@ def placement_table(placements):
     for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
             radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
-            cell_of(rate_of_rows(rows)), of_rows(rows, "missed", "colliding"),
+            rate_of_rows(rows).replace(", 95 % interval ", "; ").replace("95 % bound: ", ""),  # words of the caption
+            of_rows(rows, "missed", "colliding"),
             rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out
 
@@ -229,8 +221,8 @@ def placement_table(placements):
 
 def add_pairs(chapter, pairs):
     """Adds the estimated rates of pairs that were drawn from strata: the probability of the stratum times the share with a
-    miss. The sum over the three views counts placements that are in the strata of two of them twice, so the estimate is
-    too large by at most the factor 1 + 2 corner_px."""
+    miss. The probability is a sum over three views. It counts a placement twice if it is in the strata of two views, so the
+    estimate is too large by a factor of at most 1 + 2 corner_px."""
     out = Table("radius-pairs", "Estimated rate of placements of two single triangles in which FAR misses them: the "
                 "probability of the stratum from which they are drawn, times the share with a miss, with its 95 % interval, or "
                 "the 95 % bound. Misses of smaller radii are in other placements too",
@@ -267,14 +259,13 @@ def fill(chapter, study):
     add_headline(chapter, runs, placements)
     add_promises(chapter, study)
     add_lemmas(chapter, lemmas)
-    add_gaps(chapter, study)
     if len(lemmas):
         chapter.figures.append(lemma_figure(lemmas))
         chapter.tables.append(lemma_table(lemmas))
     if len(runs):
         chapter.figures.append(miss_figure(runs))
     if len(placements):
-        chapter.figures += [figure for figure in [placement_figure(placements)] if figure.panels]
+        chapter.figures.append(placement_figure(placements))
         chapter.tables.append(placement_table(placements))
     if len(pairs):
         add_pairs(chapter, pairs)

@@ -44,7 +44,6 @@ def fill(chapter, study):
         figure.panels += [times_panel(title, axis, "at", methods, exponents, plot)] * bool(methods)
     if said := [f"{row[-1]} over {row[0]}" for row in exponents.rows if row[1] == "Boxes"]:
         chapter.find(f"Exponents of the time of boxes, with 95 % intervals: {listed(said)}.")
-    add_gaps(chapter, study)
     if drawn:
         figure.caption = caption_of(rows, pd.concat(drawn).drop_duplicates("position"))
         chapter.figures, chapter.tables = [figure], [exponents]

@@ -20,10 +20,6 @@ def with_sources(rows, scenes):
     return rows.assign(source=[source for source, _ in found], drawn_with=[seed for _, seed in found])
 
 
-def pixels_text(pixels):
-    return "-" if pixels != pixels else rounded(pixels, 2) if pixels >= 1 else f"{pixels:.2g}"
-
-
 def self_text(row):
     own, objects = number(row, "self_objects"), number(row, "objects")
     return "no" if own == 0 else "yes" if own == objects else f"{own} of {objects}"
@@ -40,7 +36,8 @@ def table_of(rows, at):
         [[row.scene, f"{DRAWN}, seed {row.drawn_with}" if row.source == DRAWN else row.source, self_text(row),
           str(row.frame) if row.frame >= 0 else "-"] +
          [count_cell(row, name) for name in ("objects", "triangles", "colliding")] +
-         [pixels_text(value(row, "pixels_half"))] for row in rows.itertuples()])
+         ["-" if (px := value(row, "pixels_half")) != px else rounded(px, 2) if px >= 1 else f"{px:.2g}"]
+         for row in rows.itertuples()])
 
 
 def fill(chapter, study):
@@ -57,4 +54,3 @@ def fill(chapter, study):
         chapter.find(f"At {at} px the median triangle covers less than a pixel in {int((pixels < 1).sum())} of "
                      f"{int(pixels.notna().sum())} scenes.")
         chapter.tables = [table_of(rows, at)]
-    add_gaps(chapter, study)

@@ -2,7 +2,6 @@
 offsets far from the origin."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-
 FAMILIES = {"slivers": ("slivers", "aspect"), "mixed": ("mixed sizes", "ratio of sizes"),
             "edge-on": ("edge-on to a view", "times narrower"), "overlap": ("overlaps", "overlap (px)"),
             "gap": ("gaps", "gap (px)"), "stack": ("stacked sheets", "distance (px)"),
@@ -23,8 +22,8 @@ def extreme_of(row):
 
 
 def tracks_of(rows):
-    """Triples of a family with its axis, a method, and its rows by place: a cloth has several
-    frames at one place. All in the order of the grid: places go from the harmless value to the extreme."""
+    """Triples of a family with its axis, a method, and its rows by value of the family's number, in the order of the grid:
+    from the harmless value to the extreme. A cloth has several frames at one value."""
     if rows.empty:
         return []
     extremes = [extreme_of(row) for row in rows.itertuples()]
@@ -40,15 +39,10 @@ def families_of(tracks):
     return out.items()
 
 
-def keeps(rows):
-    """Whether the rows say which triangles the method keeps."""
-    return bool((column(rows, "kept_triangles").notna() & (rows.method != "exact")).any())
-
-
 def excess(rows):
-    """Kept over colliding triangles; NaN if one of both is missing."""
+    """Kept over colliding triangles; NaN if the rows lack one of the two."""
     colliding = total(rows, "colliding_triangles")
-    return total(rows, "kept_triangles") / colliding if keeps(rows) and colliding else NONE
+    return total(rows, "kept_triangles") / colliding if colliding and column(rows, "kept_triangles").notna().any() else NONE
 
 
 def number_text(x):
@@ -63,7 +57,8 @@ def missed_share(rows):
 
 
 def label(series):
-    """Names series beside their points: each where it passes half its height, and those that stay at 0 together."""
+    """Puts the name of each series beside the point where it passes half its height. Series that stay at 0 get one text with
+    all their names."""
     still = [s for s in series if not any(y > 0 for y in s.y)]
     for s in series:
         high = max((y for y in s.y if y == y), default=0)
@@ -166,7 +161,6 @@ def fill(chapter, study):
     add_rises(chapter, tracks)
     add_power(chapter, rows, tracks, names)
     add_failures(chapter, rows)
-    add_gaps(chapter, study)
     if tracks:
         chapter.figures = [figure_of(tracks)]
         chapter.tables = [table_of(rows, tracks)]

@@ -9,7 +9,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "experiments/report"))
 
-from frame import Chapter  # noqa: E402
+from frame import Chapter, fill  # noqa: E402
 from store import AXES, Store  # noqa: E402
 
 TEXTS = [axis for axis in AXES if axis not in ("resolution", "frame", "seed")]
@@ -58,7 +58,7 @@ def study_of(name, rows, declared=0):
 def chapter_of(name, rows, declared=0):
     """The chapter as the report has it: broken findings first."""
     chapter = Chapter(name, "title", "question?", "command")
-    importlib.import_module("chapters." + name.replace("-", "_")).fill(chapter, study_of(name, rows, declared))
+    fill(chapter, study_of(name, rows, declared))
     chapter.findings.sort(key=lambda finding: not finding[0])
     return chapter
 

@@ -11,7 +11,6 @@ from made_up import study_of  # first, since it finds the modules of the report
 import draw
 import estimates
 import pages
-import tables
 from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
 
 E = math.e
@@ -150,7 +149,7 @@ def test_text_is_no_markup():
     assert pages.html_text("<b>&\"'\n\x01") == "&lt;b&gt;&amp;&quot;&#39;\n "
     for text, html in (("run `a<b` `", "run <code>a&lt;b</code> `"), ("a_b*c|`d|e`[x](y)", "a_b*c|<code>d|e</code>[x](y)")):
         assert pages.html_prose(pages.markdown_prose(text)) == html
-    assert tables.latex_text("50 % of a_b & 10⁻³ ± 1") == "50 \\% of a\\_b \\& 10$^{-}$$^3$ $\\pm$ 1"
+    assert pages.latex_text("50 % of a_b & 10⁻³ ± 1") == "50 \\% of a\\_b \\& 10$^{-}$$^3$ $\\pm$ 1"
     assert pages.markdown_prose("a_b `c_d|` `") == "a\\_b `c_d\\|` \\`"
     svg = '<?xml version="1.0"?>\n<svg><g id="a"><use xlink:href="#p" clip="url(#q)"/></g></svg>'
     assert draw.inline_svg(svg, "x-") == '<svg><g id="x-a"><use xlink:href="#x-p" clip="url(#x-q)"/></g></svg>'
@@ -158,11 +157,11 @@ def test_text_is_no_markup():
 
 def test_cells_stay_cells():
     table = Table("t", "c", [("a,b", "l"), ("n", "r")], [["say \"so\"", "1,234"]])
-    assert tables.table_csv(table) == "\"a,b\",n\r\n\"say \"\"so\"\"\",\"1,234\"\r\n"
+    assert pages.table_csv(table) == "\"a,b\",n\r\n\"say \"\"so\"\"\",\"1,234\"\r\n"
     table.rows.append(["b|`c|d`\\\\", "2"])
     html = pages.block_html(pages.markdown_table(table).strip(), {})
     assert "<td class=\"r\">1,234</td>" in html and "<td>b|<code>c|d</code>\\\\</td><td class=\"r\">2</td>" in html
-    assert "\\begin{tabular}{lr}" in tables.table_latex(table)
+    assert "\\begin{tabular}{lr}" in pages.table_latex(table)
 
 
 def page_with(*said):

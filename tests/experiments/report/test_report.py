@@ -16,7 +16,7 @@ import pytest
 from made_up import CONSTANTS, importlib  # first, since it finds the modules of the report
 import draw
 from draw import legible
-from frame import Chapter
+from frame import Chapter, fill
 from store import Store
 
 PROGRAM, FIXTURE = os.environ["FARCULL_PROGRAM"], os.environ["FARCULL_REPORT_FIXTURE"]
@@ -106,7 +106,7 @@ def test_text_of_figures_is_legible(whole, monkeypatch):
     store, seen = Store(whole.parent), []
     for name in store.names:
         chapter = Chapter(name, "", "", "")
-        importlib.import_module("chapters." + name.replace("-", "_")).fill(chapter, store.study(name, CONSTANTS))
+        fill(chapter, store.study(name, CONSTANTS))
         for figure in chapter.figures:
             legible(figure)
             assert overlapping(figure) == [], figure.name
