@@ -8,7 +8,6 @@
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/bench.h"
-#include "experiments/measure/pose_bench.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"

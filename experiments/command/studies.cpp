@@ -10,7 +10,6 @@
 
 #include "core/view/view.h"
 #include "experiments/command/command.h"
-#include "experiments/peers/contestants.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
@@ -169,8 +168,7 @@ int StudiesCommand::run() {
   request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
   if (contestants_) {
     request.choice.contestants = split_list(*contestants_);
-    for (const std::string& contestant : request.choice.contestants)
-      (void)known_contestant(contestant);
+    for (const std::string& contestant : request.choice.contestants) require_contestant(contestant);
   }
   request.resume = resume_;
   request.times = !no_times_;

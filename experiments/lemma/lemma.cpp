@@ -4,18 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
-#include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "experiments/generators/pair_generators.h"
-#include "experiments/record/output.h"
-#include "verify/certificate/integer_pair.h"
-#include "verify/exact.h"
 #include "verify/exact_point.h"
 
 namespace farcull {
@@ -24,12 +16,13 @@ namespace {
 constexpr double kUsualDepth = 128;  // LemmaSettings::depth
 
 using Random = RandomNumbers;
+using Weights = std::array<int, 3>;  // of the corners of a triangle
 
 // A triangle in pixel space, and the weights of its points to test. The origin is the centre of the
 // triangle's cell, which is a pixel corner.
 struct Trial {
   std::array<Vec3, 3> corners;
-  std::vector<std::array<int, 3>> weights;
+  std::vector<Weights> weights;
 };
 
 Vec3 in_ball(Random& random, double reach) {
@@ -37,8 +30,8 @@ Vec3 in_ball(Random& random, double reach) {
           random.between(-reach, reach)};
 }
 
-std::vector<std::array<int, 3>> random_weights(Random& random, int count) {
-  std::vector<std::array<int, 3>> out = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+std::vector<Weights> random_weights(Random& random, int count) {
+  std::vector<Weights> out = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < count; ++i) {
     const int a = random.below(1025), b = random.below(1025 - a);
     out.push_back({a, b, 1024 - a - b});
@@ -53,13 +46,13 @@ Trial diagonal_segment(Random& random, const Vec3& q) {
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
 }
 
-// Makes trials. Tiny ones fit a cell of 6 px, `large` ones (reach 24 px) a cell of 128 px.
+// Makes trials of one kind.
 struct Generator {
   const char* name;
-  bool large;
-  int side;  // px, of the window; a power of two together with the border, so that coordinates
-             // reach the viewport's rim
-  bool rim;  // cells only in the window's far corner
+  bool large;  // trials reach 24 px and have cells of 128 px; else they are tiny, in cells of 6 px
+  int side;    // px, of the window; a power of two together with the border, so that coordinates
+               // reach the viewport's rim
+  bool rim;    // cells only in the window's far corner
   Trial (*make)(Random&);
 };
 
@@ -135,9 +128,10 @@ Trial segment_or_point(Random& random) {
   return {{a, b, random.below(2) ? a : b}, random_weights(random, 60)};
 }
 
-// A triangle nearly along the view. Its longest edge leans at 45 degrees in the image, with its
-// middle at a pixel corner. So the face of its box that looks at a pixel's centre is as steep as
-// the edge. The lean is a multiple of 2^-20 px, so that the middle is exactly at the corner.
+// A triangle nearly along the view. In the image its longest edge leans at 45 degrees, and the
+// middle of this edge is at a pixel corner. So the face of the triangle's box that looks at a
+// pixel's centre is as steep as the edge. The lean is a multiple of 2^-20 px, so that the middle is
+// exactly at the corner.
 Trial steep_corner(Random& random) {
   const double lean = std::floor(std::exp2(random.between(-10, -1)) * 0x1p20) * 0x1p-20;
   const Vec3 q(0, 0, random.between(-20, 20));
@@ -161,22 +155,20 @@ constexpr Generator kGenerators[] = {{"pixel corners", false, 508, false, corner
                                      {"steep at pixel corners", false, 508, false, steep_corner}};
 
 Window lab_window(int side, double depth) {
-  Window w{.view = parse_view("z"),
-           .origin = Vec3::Zero(),
-           .map = Eigen::Matrix3d::Identity(),
-           .pixel_size = 1,
-           .width = side,
-           .height = side,
-           .lo = {},
-           .hi = {}};
-  w.hi = Vec3(0.5 * side, 0.5 * side, depth);
-  w.lo = -w.hi;
-  return w;
+  const Vec3 half(0.5 * side, 0.5 * side, depth);
+  return {.view = parse_view("z"),
+          .origin = Vec3::Zero(),
+          .map = Eigen::Matrix3d::Identity(),
+          .pixel_size = 1,
+          .width = side,
+          .height = side,
+          .lo = -half,
+          .hi = half};
 }
 
 // Moves each corner by kMaxDoubleError along each axis, as double arithmetic may. In half of the
-// cases one vector moves all corners, which moves the triangle's points farthest; else each corner
-// has its own vector, which turns the edges.
+// cases one vector moves all corners, so that the triangle's points move as far as possible; in the
+// other half each corner has its own vector, so that edges turn.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
   const bool turn = random.below(2) != 0;
   Vec3 by(0, 0, 0);
@@ -186,8 +178,8 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// As depth_rounding(), but also for a buffer of 16 bits, which rounds by 1 / (2^16 - 1) more when
-// it stores, and by 2^-24 when it is read back as a float.
+// As depth_rounding(), in steps of 2^-24, but also for a buffer of 16 bits. That buffer rounds by
+// 1 / (2^16 - 1) more when it stores, and by 2^-24 when it is read back as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }
@@ -275,9 +267,8 @@ std::vector<std::string> lemma_generators() {
 
 std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
                                        const LemmaSettings& settings, const Progress& progress) {
-  const std::vector<std::string> names = lemma_generators();
   if (!settings.generator.empty() &&
-      std::find(names.begin(), names.end(), settings.generator) == names.end()) {
+      std::ranges::count(lemma_generators(), settings.generator) == 0) {
     throw std::logic_error("lemma_experiment: no generator " + settings.generator);
   }
   std::vector<LemmaRow> rows;

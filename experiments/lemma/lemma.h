@@ -2,12 +2,10 @@
 // and checks in exact arithmetic whether the samples of a pixel bound the points in it.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "core/canvas/canvas.h"
 #include "core/canvas/fatten.h"
 #include "core/cull/cull.h"
 

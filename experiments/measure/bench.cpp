@@ -5,18 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
-#include "core/scene/scene.h"
-#include "experiments/measure/harness.h"
-#include "experiments/method/run.h"
-#include "experiments/peers/peer.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"
@@ -31,23 +24,17 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
-/// The time for making boxes, before the search for candidates.
-double build_ms_of(const std::vector<Stage>& trace) {
-  double ms = 0;
-  for (const Stage& stage : trace) {
-    if (stage.kind == StageKind::boxes) ms += stage.ms;
-  }
-  return ms;
-}
-
-// Runs without neighbours, since the peers leave them out too.
+// Leaves out neighbours, as the peers do.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
   if (draws(method)) options.device = device;
   return [=](const Scene& scene) {
     const Stopwatch watch;
     Record record = run(scene, options, *session, {}, {.answer_only = true});
-    const double build_ms = build_ms_of(record.trace);
+    double build_ms = 0;  // for making boxes, before the search for candidates
+    for (const Stage& stage : record.trace) {
+      if (stage.kind == StageKind::boxes) build_ms += stage.ms;
+    }
     return BenchAnswer{.build_ms = build_ms,
                        .candidates_ms = watch.ms() - record.ms.exact - build_ms,
                        .exact_ms = record.ms.exact,
@@ -117,28 +104,18 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
 void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.peers != "all";
   for (const Peer& peer : chosen_peers(options.peers, all_peers())) {
-    BenchContestant contestant{.name = peer.name, .peer = true, .library = peer.library};
-    contestant.left_out = peer.missing;
-    if (contestant.left_out.empty() && peer.refuses) contestant.left_out = peer.refuses(scene);
+    const BenchContestant contestant{.name = peer.name,
+                                     .peer = true,
+                                     .library = peer.library,
+                                     .left_out = why_left_out(peer, scene)};
     list.add(contestant, by_name, "--peers",
              [&](BenchContestant& c) { c.run = peer.set_up(options.threads); });
   }
 }
 
-// Medians of the parts of a contestant's runs.
+// Milliseconds of the parts of a contestant's runs.
 struct Parts {
   std::vector<double> build, candidates, exact;
-
-  void add(const BenchAnswer& answer) {
-    build.push_back(answer.build_ms);
-    candidates.push_back(answer.candidates_ms);
-    exact.push_back(answer.exact_ms);
-  }
-  void write_to(BenchRow& row) const {
-    row.build_ms = middle(build);
-    row.candidates_ms = middle(candidates);
-    row.exact_ms = middle(exact);
-  }
 };
 
 // The first pair, in order, that only one of two sorted lists has.
@@ -158,15 +135,7 @@ std::optional<Disagreement> compare(const Scene& scene, const std::string& first
   return out;
 }
 
-BenchRow cold_row(const BenchContestant& c, const BenchAnswer& answer) {
-  BenchRow row{{.name = c.name, .library = c.library, .peer = c.peer}, c.device};
-  row.setup_ms = c.setup_ms;
-  row.candidate_pairs = answer.candidate_pairs;
-  row.pairs = answer.pairs.size();
-  return row;
-}
-
-/// The row of boxes; null if it was not measured.
+/// Null if the method boxes was not measured.
 const BenchRow* row_of_boxes(const BenchResult& result) {
   const auto row = std::ranges::find(result.rows, "boxes", &BenchRow::name);
   return row == result.rows.end() ? nullptr : &*row;
@@ -241,11 +210,10 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
   BenchResult result;
   std::vector<const BenchContestant*> running;
   for (const BenchContestant& c : contestants) {
-    if (c.left_out.empty()) {
+    if (c.left_out.empty())
       running.push_back(&c);
-    } else {
+    else
       result.left_out.push_back(c);
-    }
   }
 
   const Rounds rounds{
@@ -261,9 +229,20 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
         const double ms = watch.ms();
         // Other libraries do not know which pairs of objects are ignored.
         remove_ignored(scene, scene.ignored, answer.pairs);
-        if (round < 0) result.rows.push_back(cold_row(c, answer));
+        if (round < 0) {
+          BenchRow& row = result.rows.emplace_back();
+          static_cast<TimedRow&>(row) = {.name = c.name, .library = c.library, .peer = c.peer};
+          row.device = c.device;
+          row.setup_ms = c.setup_ms;
+          row.candidate_pairs = answer.candidate_pairs;
+          row.pairs = answer.pairs.size();
+        }
         // A cold run counts only if it is over the limit: then no other run follows.
-        if (round >= 0 || ms > rounds.limit_ms) parts[i].add(answer);
+        if (round >= 0 || ms > rounds.limit_ms) {
+          parts[i].build.push_back(answer.build_ms);
+          parts[i].candidates.push_back(answer.candidates_ms);
+          parts[i].exact.push_back(answer.exact_ms);
+        }
         if (i == 0 && round < 0) {
           agreed = std::move(answer.pairs);
         } else if (!result.disagreement) {
@@ -274,7 +253,9 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
 
   for (std::size_t i = 0; i < running.size(); ++i) {
     set_times(timed[i], rounds, i, true, result);
-    parts[i].write_to(result.rows[i]);
+    result.rows[i].build_ms = middle(parts[i].build);
+    result.rows[i].candidates_ms = middle(parts[i].candidates);
+    result.rows[i].exact_ms = middle(parts[i].exact);
   }
   return result;
 }
@@ -331,11 +312,10 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
              best ? "x boxes" : "", "pairs", "candidates", "MiB", "cold", "setup", "build", "find",
              "exact"});
   for (const BenchRow& row : result.rows) {
-    const std::optional<double> ratio = ratio_to_fastest(result, row);
     std::vector<std::string> cells = time_cells(row);
     cells.insert(cells.begin() + 1, row.device);
     cells.insert(cells.end() - 1,
-                 {ratio ? fmt::format("{:.3f}", *ratio) : "",
+                 {ratio_text(ratio_to_fastest(result, row)),
                   best ? fmt::format("{:.2f}", row.total_ms.median / best->total_ms.median) : "",
                   grouped(row.pairs), grouped(row.candidate_pairs), mib_text(row)});
     cells.insert(cells.end(), {ms_text(row.setup_ms), ms_text(row.build_ms),
@@ -384,8 +364,11 @@ std::vector<std::string> time_cells(const TimedRow& row) {
           ms_text(row.cold_ms)};
 }
 
-nlohmann::ordered_json bench_facts(const Scene& scene,
-                                   const std::vector<std::pair<std::string, std::string>>& left_out,
+std::string ratio_text(const std::optional<double>& ratio) {
+  return ratio ? fmt::format("{:.3f}", *ratio) : "";
+}
+
+nlohmann::ordered_json bench_facts(const Scene& scene, const LeftOut& left_out,
                                    nlohmann::ordered_json options) {
   return {{"left_out", json_list(left_out,
                                  [](const auto& one) {
@@ -397,6 +380,13 @@ nlohmann::ordered_json bench_facts(const Scene& scene,
           {"options", std::move(options)},
           {"cpu", cpu_model()},
           {"commit", FARCULL_COMMIT}};
+}
+
+std::string left_out_lines(const LeftOut& left_out) {
+  std::string out;
+  for (const auto& [name, reason] : left_out)
+    out += fmt::format("left out: {}: {}\n", name, reason);
+  return out;
 }
 
 std::string bench_title(const Scene& scene, unsigned threads) {

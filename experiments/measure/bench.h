@@ -1,5 +1,6 @@
 // `farcull bench` times peers and our methods from the same triangles to the same pairs; with
-// --distances, to distances between objects, whose errors it counts. One process runs them all.
+// --distances, to distances between objects, whose errors it counts; with --poses, frames in which
+// an object moves as a whole. One process runs them all.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "core/cull/cull.h"
 #include "experiments/measure/harness.h"
 #include "experiments/peers/peer.h"
 
@@ -31,7 +31,7 @@ struct BenchContestant {
 
 struct BenchOptions {
   std::string peers = "all";    // all, none, or names with commas
-  std::string methods = "all";  // likewise
+  std::string methods = "all";  // as peers
   unsigned threads = 1;
   int repeat = 5;
   double limit_s = 60;                // a contestant whose cold run takes longer is not repeated
@@ -129,7 +129,7 @@ struct DistanceBenchOptions {
 struct DistanceErrors {
   std::uint64_t answers = 0;
   std::uint64_t lacking = 0;       // distances that only our answer has
-  std::uint64_t beyond = 0;        // distances that our answer leaves out: beyond `within`
+  std::uint64_t beyond = 0;        // distances that our answer leaves out: larger than `within`
   std::uint64_t exact = 0;         // answers that are the same double as ours
   std::uint64_t other_zero = 0;    // answers 0 for objects apart, or not 0 for objects that meet
   std::uint64_t other_object = 0;  // with `nearest`: answers with a farther object
@@ -142,10 +142,12 @@ struct DistanceBenchRow : TimedRow {
   DistanceErrors errors = {};
 };
 
+using LeftOut = std::vector<std::pair<std::string, std::string>>;  // name, reason
+
 struct DistanceBenchResult {
-  std::vector<DistanceBenchRow> rows;                         // ours is the first
-  std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
-  std::optional<std::size_t> fastest_peer;                    // into rows; comparable peers only
+  std::vector<DistanceBenchRow> rows;  // ours is the first
+  LeftOut left_out;
+  std::optional<std::size_t> fastest_peer;  // into rows; comparable peers only
 };
 
 /// Measures distances between different objects, also if the scene tests one against itself. Throws
@@ -168,9 +170,45 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
                                  const DistanceBenchResult& result);
 
-// Shared by bench() and bench_distances().
+// Poses: frames in which an object moves as a whole, found by new calls of the library, by a
+// Collider that is given poses alone, and by peers that keep models of the objects.
 
-/// "NAME, cold" or "NAME, 2 of 5"; nothing without a callback.
+struct PoseBenchOptions {
+  std::string peers = "all";  // all, none, or names with commas
+  unsigned threads = 1;
+  int repeat = 5;       // frames that count
+  double limit_s = 60;  // a contestant whose cold frame takes longer is not repeated
+};
+
+struct PoseBenchRow : TimedRow {
+  double cpu_ms = 0;  // processor time of the process, a median
+  // Sums over all frames. lacking: pairs that only row 0 has; beyond: pairs that row 0 lacks.
+  std::uint64_t pairs = 0, lacking = 0, beyond = 0;
+};
+
+struct PoseBenchResult {
+  std::vector<PoseBenchRow> rows;  // a call with arrays; a Collider given poses alone; peers
+  LeftOut left_out;
+  std::optional<std::size_t> fastest_peer;  // into rows
+};
+
+/// Turns the first object a little in each frame, and finds the colliding pairs of different
+/// objects. Throws Error that names the option if a peer is unknown or `repeat` is below 1. Also
+/// throws as Collider::find() does.
+PoseBenchResult bench_poses(const Scene& scene, const PoseBenchOptions& options,
+                            const Progress& progress = {});
+
+/// Which of our rows differs from row 0, in words; empty: none.
+std::string disagreement_of(const PoseBenchResult& result);
+
+nlohmann::ordered_json to_json(const Scene& scene, const PoseBenchOptions& options,
+                               const PoseBenchResult& result);
+std::string pose_bench_table(const Scene& scene, const PoseBenchOptions& options,
+                             const PoseBenchResult& result);
+
+// Shared by the three.
+
+/// Reports "NAME, cold" or "NAME, 2 of 5" if there is a callback.
 void show_round(const Progress& progress, const std::string& name, int round, int repeats);
 /// Writes the times of row i. Makes the row the fastest peer if it is a peer, `counts` is true and
 /// its median is the least so far.
@@ -188,16 +226,17 @@ void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool cou
     result.fastest_peer = i;
 }
 /// Cells of a table: milliseconds; memory; the first cells of a row, from its name to its cold
-/// run.
+/// run; a ratio, or nothing.
 std::string ms_text(double ms);
 std::string mib_text(const TimedRow& row);
 std::vector<std::string> time_cells(const TimedRow& row);
+std::string ratio_text(const std::optional<double>& ratio);
 /// The end of a record of distances or of poses: what was left out and why, the scene's facts, the
 /// options, the processor and the commit.
-nlohmann::ordered_json bench_facts(const Scene& scene,
-                                   const std::vector<std::pair<std::string, std::string>>& left_out,
+nlohmann::ordered_json bench_facts(const Scene& scene, const LeftOut& left_out,
                                    nlohmann::ordered_json options);
-/// The first line of a table.
+/// The first line of a table, and the lines below it that say what was left out.
 std::string bench_title(const Scene& scene, unsigned threads);
+std::string left_out_lines(const LeftOut& left_out);
 
 }  // namespace farcull

@@ -4,31 +4,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "commit.h"
 #include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/scene_file.h"
-#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
-constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
+constexpr int kUsualRepeats = 3;
+constexpr double kLongMs = 10'000;
 
-// The resolutions of a method; only 0 for a method that does not draw.
+// The resolutions of a method in px; only 0 for a method that does not draw.
 std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
   if (!draws(method)) return {0};
   std::vector<int> out;
-  for (const std::string& text : split_list(arguments.resolutions.value_or(kUsualResolutions)))
+  for (const std::string& text :
+       split_list(arguments.resolutions.value_or("128,256,512,1024,2048")))
     out.push_back(parse_resolution(text, "--resolutions"));
   return out;
 }

@@ -12,15 +12,13 @@
 namespace farcull {
 
 struct CompareArguments {
-  /// Names with commas. Empty: those of far, cullide, boxes and exact that support the clearance
-  /// and, if the scene has objects to be tested against themselves, also that.
-  std::optional<std::string> methods;
+  std::optional<std::string> methods;  // names with commas; empty: usual_methods()
   /// px, with commas, for methods that draw.
   std::optional<std::string> resolutions;
   std::string offsets = "obb";   // for far
   std::string radii = "budget";  // for far, with commas, as parse_radius() takes each
   bool self = false;             // every object was made to be tested against itself
-  /// Runs of each; empty: kUsualRepeats, but only one if that takes longer than kLongMs.
+  /// Runs of each; empty: three, but only one if that takes longer than ten seconds.
   std::optional<std::string> repeat;
   bool risk = true;  // count the pairs at risk of far
   /// Views, device, clearance and seed are for all methods; rounds, clear, level and conservative
@@ -34,10 +32,9 @@ struct Comparison {
   /// For each group of repeats the run with the median of cull + exact time, and the spread.
   std::vector<Compared> rows() const;
 };
-inline constexpr int kUsualRepeats = 3;
-inline constexpr double kLongMs = 10'000;
 
-/// The methods that are compared if none are named: those that serve the question.
+/// The methods that are compared if none are named: those of far, cullide, boxes and exact that
+/// support the clearance if there is one, and tests of objects against themselves if `self` is set.
 std::string usual_methods(bool clearance, bool self);
 
 /// Throws Error naming the option for bad arguments, before a scene is read.

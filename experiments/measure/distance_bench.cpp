@@ -3,26 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
-#include <utility>
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
-#include "core/view/view.h"
-#include "experiments/measure/harness.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/output.h"
-#include "experiments/record/tables.h"
-#include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
-
-constexpr const char* kOurs = "farcull";
 
 PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigned threads) {
   const bool nearest = question.task == DistanceTask::nearest;
@@ -38,10 +29,6 @@ PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigne
 
 bool by_objects(const PeerDistance& x, const PeerDistance& y) {
   return std::tie(x.a, x.b) < std::tie(y.a, y.b);
-}
-
-std::string task_name(const PeerQuestion& question) {
-  return question.task == DistanceTask::objects ? "objects" : "nearest";
 }
 
 }  // namespace
@@ -67,7 +54,7 @@ std::vector<PeerDistance> as_peer(const DistanceRecord& record) {
 }
 
 DistancePeer farcull_distances() {
-  return {.name = kOurs, .library = "farcull", .missing = "", .run = ask_ours};
+  return {.name = "farcull", .library = "farcull", .run = ask_ours};
 }
 
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
@@ -110,13 +97,11 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
   DistanceBenchResult result;
   std::vector<DistancePeer> running = {farcull_distances()};
   for (DistancePeer& peer : chosen_peers(options.peers, distance_peers())) {
-    std::string reason = peer.missing;
-    if (reason.empty() && peer.refuses) reason = peer.refuses(scene);
-    if (reason.empty()) {
+    const std::string reason = why_left_out(peer, scene);
+    if (reason.empty())
       running.push_back(std::move(peer));
-    } else {
+    else
       result.left_out.emplace_back(peer.name, reason);
-    }
   }
 
   const Rounds rounds{
@@ -164,8 +149,9 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
     rows.push_back(std::move(one));
   }
   const double within = options.question.within;
+  const bool objects = options.question.task == DistanceTask::objects;
   Json json = {{"scene", scene.name},
-               {"distances", task_name(options.question)},
+               {"distances", objects ? "objects" : "nearest"},
                {"within", json_if(!std::isinf(within), within)},
                {"threads", options.threads},
                {"rows", rows},
@@ -182,28 +168,23 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
   table.add({"", "ms", "low", "high", "n", "cold", "build", "query", "MiB", "distances", "exact",
              "lacking", "other 0", "rel. error", result.fastest_peer ? "x fastest" : ""});
   for (const DistanceBenchRow& row : result.rows) {
-    const auto times = ratio_to_fastest(result, row);
     std::vector<std::string> cells = time_cells(row);
     cells.insert(cells.end(), {ms_text(row.build_ms), ms_text(row.query_ms), mib_text(row),
                                grouped(row.errors.answers), grouped(row.errors.exact),
                                grouped(row.errors.lacking), grouped(row.errors.other_zero),
                                fmt::format("{:.1e}", row.errors.largest_relative),
-                               times ? fmt::format("{:.3f}", *times) : ""});
+                               ratio_text(ratio_to_fastest(result, row))});
     table.add(cells);
   }
-  out += table.text();
-  for (const auto& [name, reason] : result.left_out)
-    out += fmt::format("left out: {}: {}\n", name, reason);
+  out += table.text() + left_out_lines(result.left_out);
   out +=
-      "\nms: from the triangles to the distances, median of n runs; low, high: its interval\nby "
-      "the "
-      "bootstrap, which holds the true median with 95 % from 9 independent runs on, with\n94 % for "
-      "5 "
-      "and 75 % for 3; cold: the first run; MiB: resident at the peak of the cold run,\nbeyond "
-      "before. exact: the correctly rounded distance; lacking: distances that were not\nfound; "
-      "other "
-      "0: objects that meet called apart, or the reverse; rel. error: the largest one\nof the "
-      "others.\n";
+      "\nms: from the triangles to the distances, median of n runs; low, high: its interval\n"
+      "by the bootstrap, which holds the true median with 95 % from 9 independent runs on, with\n"
+      "94 % for 5 and 75 % for 3; cold: the first run; MiB: resident at the peak of the cold run,\n"
+      "beyond before. exact: the correctly rounded distance; lacking: distances that were not\n"
+      "found; other 0: objects that meet called apart, or the reverse; rel. error: the largest "
+      "one\n"
+      "of the others.\n";
   if (result.fastest_peer) {
     out +=
         fmt::format("x fastest: of the fastest peer that measures in doubles, {}, in this run.\n",

@@ -9,23 +9,16 @@
 #include <utility>
 
 #include "core/base/stopwatch.h"
-#include "core/scene/scene.h"
 #include "core/view/view.h"
-#include "experiments/method/run.h"
-#include "experiments/record/output.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/record/tables.h"
-#include "experiments/scenes/frames.h"
-#include "experiments/system/output_file.h"
-#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The keys of a run's record that differ between frames; the others hold for all frames. Options of
-// drawing are among them, since boxes may leave nothing to draw in a frame.
+// The keys of a run's record that differ between frames; the other keys hold for all frames.
+// Options of drawing differ, since boxes may leave nothing to draw in a frame.
 std::vector<std::string> keys_of_frame() {
   std::vector<std::string> keys = split_list(
       "views,stages,pcs,object_triangles,candidate_pairs,colliding_pairs,neighbour_pairs,"
@@ -65,16 +58,15 @@ Json frame_json(const Scene& scene, const Record& record, const Json& head, long
   return out;
 }
 
-// Formats a line for each frame as the frame comes. A column is added when a frame first has a cell
-// for it. The line of names is repeated when a column is added or becomes wider.
+// Formats a line for each frame as soon as the frame is done. A column is added when a frame first
+// has a cell for it. The line of names is repeated when a column is added or becomes wider.
 class FrameTable {
  public:
   /// width: the least width of the first column.
   explicit FrameTable(std::size_t width) : first_width_(width) {}
 
   void add(const std::string& column, const std::string& cell) {
-    auto found = std::find_if(columns_.begin(), columns_.end(),
-                              [&](const Column& known) { return known.name == column; });
+    auto found = std::ranges::find(columns_, column, &Column::name);
     if (found == columns_.end()) {
       const std::size_t least = columns_.empty() ? first_width_ : cell.size() + 1;
       found = columns_.insert(found, Column{column, std::max(least, column.size()), ""});
@@ -141,34 +133,30 @@ void add_row(const Scene& scene, const Record& record, long frame, const FrameNo
   for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
 }
 
-// Each warning once, with the frames that had it.
-class Warnings {
- public:
+// Each warning once, with the first frame that had it and the number of such frames.
+struct Warnings {
+  struct Line {
+    std::string text;
+    long first = 0, frames = 0;
+  };
+  std::vector<Line> lines;
+
   void add(long frame, const std::string& warning) {
     if (warning.empty()) return;
-    for (Line& line : lines_) {
-      if (line.text != warning) continue;
-      ++line.frames;
-      return;
-    }
-    lines_.push_back({warning, frame, 1});
+    const auto known = std::ranges::find(lines, warning, &Line::text);
+    if (known == lines.end())
+      lines.push_back({warning, frame, 1});
+    else
+      ++known->frames;
   }
   std::string text() const {
     std::string out;
-    for (const Line& line : lines_) {
+    for (const Line& line : lines) {
       out += fmt::format("warning  {} (frame {}{})\n", line.text, line.first,
                          line.frames > 1 ? fmt::format(" and {} more", line.frames - 1) : "");
     }
     return out;
   }
-
- private:
-  struct Line {
-    std::string text;
-    long first = 0;
-    long frames = 0;
-  };
-  std::vector<Line> lines_;
 };
 
 FrameTimes summary_of_sorted(const std::vector<double>& ms) {

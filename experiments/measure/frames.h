@@ -3,11 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
@@ -18,8 +14,8 @@ namespace farcull {
 
 /// The loop over frames of every command. Calls `one` with each frame of the range and a progress
 /// that puts `before` and "frame 3 of 10: " before its stages. SIGINT, SIGTERM and SIGHUP end the
-/// program at once, with a line on standard error: the number of finished frames, and `end`.
-/// end: null for no line.
+/// program at once, with a line on standard error: the number of finished frames, and `end`. end:
+/// null for no line.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
                     const std::function<void(long frame, const Progress& named)>& one);
@@ -30,7 +26,7 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;       // farcull verify: require the guarantee of every method
   bool pairs = false;        // write the CSV of pairs
-  PairColumns columns = {};  // of the CSV, besides the usual ones
+  PairColumns columns = {};  // of the CSV, besides those that every list has
   bool certificates = false;
   /// The objects of a frame's scene that are not tested against each other; empty: options.ignored.
   std::function<std::vector<ObjectPair>(const Scene&)> ignored = {};
@@ -47,12 +43,13 @@ FrameTimes summary_of(std::vector<double> ms);
 
 /// The results of a frame that is done.
 struct FrameReport {
-  const nlohmann::ordered_json& head;     // of all frames: the record without the two below
+  const nlohmann::ordered_json& head;     // what holds for all frames: the record without the next
+                                          // two members
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
-  std::string rows;                       // for people; those of the first frame have a heading
-  std::string pairs_csv;    // as pairs_rows(), after a column `frame`; the first with the header
-  long number = 0;          // of the frame
+  std::string rows;                       // for people; the first frame's rows have a heading
+  std::string pairs_csv;  // pairs_rows() after a column `frame`; the first frame's with the header
+  long number = 0;        // of the frame
   std::string certificate;  // its text, if certificates are wanted
 };
 using FrameSink = std::function<void(const FrameReport&)>;

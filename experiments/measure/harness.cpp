@@ -2,18 +2,10 @@
 // whose numbers the C++ standard fixes.
 #include "experiments/measure/harness.h"
 
-#include <algorithm>
-#include <cstdint>
-#include <iterator>
 #include <numeric>
 #include <random>
-#include <utility>
 
-#include "core/scene/scene.h"
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
-#include "experiments/scenes/frames.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/machine.h"
 #include "verify/exact.h"
 
@@ -23,7 +15,7 @@ namespace {
 constexpr std::size_t kResamples = 10000;
 constexpr std::uint64_t kSeed = 1;
 
-// Reorders the values.
+// As middle(), but reorders the values. Precondition: not empty.
 double middle_of(std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(n / 2);
@@ -31,49 +23,31 @@ double middle_of(std::vector<double>& values) {
   return n % 2 == 1 ? *at : (*std::max_element(values.begin(), at) + *at) / 2;
 }
 
-class Draws {
- public:
-  // The median of values.size() draws from `values`, with replacement.
-  double median(const std::vector<double>& values) {
-    drawn_.clear();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      // std::uniform_int_distribution differs between libraries. The bias is below n / 2^32.
-      drawn_.push_back(values[((generator_() >> 32) * values.size()) >> 32]);
-    }
-    return middle_of(drawn_);
-  }
-
- private:
-  std::mt19937_64 generator_{kSeed};
-  std::vector<double> drawn_;
-};
-
-// The value with the 95 % interval of `resampled`, which is not empty.
-Estimate with_interval(double value, std::size_t n, std::vector<double> resampled) {
-  std::sort(resampled.begin(), resampled.end());
-  const std::size_t cut = resampled.size() / 40;  // 2.5 %
-  return {value, resampled[cut], resampled[resampled.size() - 1 - cut], n};
-}
-
 }  // namespace
 
 double middle(std::vector<double> values) { return values.empty() ? 0 : middle_of(values); }
 
-Estimate median_estimate(std::vector<double> values) {
+Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  Draws draws;
-  std::vector<double> medians(kResamples);
-  for (double& median : medians) median = draws.median(values);
+  std::ranges::sort(values);  // so that their order does not matter
   const std::size_t n = values.size();
-  return with_interval(middle_of(values), n, std::move(medians));
-}
-
-Spread spread_of(const std::vector<double>& values) {
-  if (values.empty()) return {};
-  const auto [min, max] = std::minmax_element(values.begin(), values.end());
-  const Estimate median = median_estimate(values);
-  return {median.value, *min, *max, median.low, median.high, median.n};
+  std::mt19937_64 generator(kSeed);
+  std::vector<double> medians(kResamples), drawn(n);
+  for (double& median : medians) {
+    for (double& value : drawn) {
+      // std::uniform_int_distribution differs between libraries. The bias is below n / 2^32.
+      value = values[((generator() >> 32) * n) >> 32];
+    }
+    median = middle_of(drawn);
+  }
+  std::ranges::sort(medians);
+  const std::size_t cut = kResamples / 40;  // 2.5 %
+  return {.median = middle(values),
+          .min = values.front(),
+          .max = values.back(),
+          .low = medians[cut],
+          .high = medians[kResamples - 1 - cut],
+          .n = n};
 }
 
 nlohmann::ordered_json to_json(const Spread& spread) { return json_of(spread); }
@@ -100,11 +74,10 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
       if (rounds.memory && round == -rounds.warm_up) memory.emplace();
       const double ms = run(i, round);
       if (memory) timed.peak_mib = memory->grown_mib();
-      if (round < 0) {
+      if (round < 0)
         timed.warm_up_ms = ms;
-      } else {
+      else
         timed.ms.push_back(ms);
-      }
     }
   }
   return out;

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -16,35 +15,21 @@
 #include <vector>
 
 #include "core/base/fields.h"
-#include "core/cull/cull.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull {
 
-struct Record;
-
-/// An estimate from n measurements with its 95 % interval.
-struct Estimate {
-  double value = 0, low = 0, high = 0;
-  std::size_t n = 0;
-};
-
 /// The middle value, or the mean of the two in the middle if the number of values is even; 0 if
 /// there are no values.
 double middle(std::vector<double> values);
 
-/// The middle() with the percentile interval of the bootstrap (Efron and Tibshirani 1993,
-/// section 13.3): 10,000 times, n of the n values are drawn with replacement. The interval goes
-/// from the 2.5th to the 97.5th percentile of the medians of these draws. The generator has a fixed
-/// seed, so the same values in any order give the same interval. The interval contains the true
-/// median with a probability of 75 % for 3 independent runs, 94 % for 5 and 96 % for 9
-/// (docs/experiments.md, "Statistics"). All 0 if there are no values.
-Estimate median_estimate(std::vector<double> values);
-
-/// Statistics of several values. median: as middle(). low, high: the 95 % interval of the median
-/// (median_estimate()). n: how many values.
+/// Statistics of n values. median: as middle(). low, high: its 95 % interval, the percentile
+/// interval of the bootstrap (Efron and Tibshirani 1993, section 13.3): 10,000 times, n of the n
+/// values are drawn with replacement, and the interval goes from the 2.5th to the 97.5th percentile
+/// of the medians of these draws. The same values in any order give the same interval.
+/// docs/experiments.md, "Statistics", has the probability with which it contains the true median.
 struct Spread {
   double median = 0, min = 0, max = 0;
   double low = 0, high = 0;
@@ -52,7 +37,7 @@ struct Spread {
   FARCULL_FIELDS(median, min, max, low, high, n)
 };
 /// All 0 if there are no values.
-Spread spread_of(const std::vector<double>& values);
+Spread spread_of(std::vector<double> values);
 nlohmann::ordered_json to_json(const Spread& spread);
 
 /// The index of the run with the median time; if the number of runs is even, the faster of the two
@@ -102,8 +87,8 @@ struct TruePairs {
 /// The triangles that are in a pair, each once, ascending.
 std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
 
-/// The truth without pairs of triangles of one object that share a vertex position, which other
-/// libraries leave out.
+/// The truth without pairs of triangles of one object that share a vertex position. Other libraries
+/// leave these pairs out.
 TruePairs without_neighbours(const Scene& scene, const TruePairs& truth);
 
 /// How an answer differs from the truth. All pairs count, neighbours among them.

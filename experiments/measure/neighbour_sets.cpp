@@ -3,7 +3,6 @@
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <new>
 #include <optional>
@@ -13,7 +12,6 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/proximity/near_pairs.h"
-#include "core/voronoi/voronoi.h"
 #include "verify/closest.h"
 #include "verify/exact.h"
 
@@ -35,12 +33,12 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// A box whose computed least squared distance is above this limit is farther than the largest
+// A box whose computed least squared distance is above this limit is farther away than the largest
 // distance whose square was computed as `largest`. Let u = 2^-53. A difference, a square and two
-// sums round, and a square below 2^-1022 is off by 2^-1075: both squares are off the exact ones by
-// factors of (1 - u)^5 to (1 + u)^5, and by 2^-1072. The factor 1 + 16 u covers both, and the
-// rounding of this product; 2^-1000 covers the rest. A square that overflows is infinite on both
-// sides, so its box is kept.
+// sums round, and a square below 2^-1022 is off by 2^-1075. So each computed square is off the
+// exact one by a factor of (1 - u)^5 to (1 + u)^5, and by 2^-1072. The factor 1 + 16 u covers this
+// for both squares, and the rounding of this product; 2^-1000 covers the rest. If a square
+// overflows, both sides are infinite, and the box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // An object may hold the nearest neighbour of another one if the least distance of their boxes is
@@ -92,11 +90,16 @@ NeighbourSets sets_of_trees(const Scene& scene, const NeighbourOptions& options,
   return out;
 }
 
-// As diagram_sets(), but if there are no sets, left_out says why.
 NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& options,
                               const Progress& progress) {
+  const VoronoiOptions voronoi{.resolution = options.resolution,
+                               .widening = options.widening,
+                               .threads = options.threads,
+                               .most_pairs = options.most_pairs};
+  const bool reliable = options.method == NeighbourMethod::voronoi_reliable;
+  VoronoiNeighbours found;
   try {
-    return diagram_sets(scene, options, progress);
+    found = (reliable ? reliable_neighbours : voronoi_neighbours)(scene, voronoi, progress);
   } catch (const Error& error) {
     // Options that are out of range remain an Error.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
@@ -104,12 +107,20 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   } catch (const std::bad_alloc&) {
     return {.objects = {}, .left_out = "the memory of this machine does not hold the diagram"};
   }
+  NeighbourSets out{.objects = std::move(found.objects),
+                    .has_pairs = reliable,
+                    .pairs = std::move(found.triangles)};
+  if (reliable) return out;
+  for (const auto& [a, b] : out.objects)
+    out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
+  return out;
 }
 
-// For each object, adds how many triangles of other objects its pairs name, each counted once.
-// Pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So pairs
-// whose a is in one object come together, and so do pairs of one a with one object. It is enough to
-// remember the object of the last a for each triangle b, and the last a for each object of b.
+// For each object, adds the number of triangles of other objects in its pairs, each counted once.
+// Pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So the
+// pairs with a in one object follow each other, and so do the pairs of one a with one object. It is
+// enough to remember, for each triangle b, the object of the last a, and for each object of b, the
+// last a.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -176,25 +187,6 @@ NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options
   return sets_of_boxes(scene);
 }
 
-NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
-                           const Progress& progress) {
-  if (!has_cells(options.method)) throw std::logic_error("diagram_sets: no diagram");
-  const VoronoiOptions voronoi{.resolution = options.resolution,
-                               .widening = options.widening,
-                               .threads = options.threads,
-                               .most_pairs = options.most_pairs};
-  const bool reliable = options.method == NeighbourMethod::voronoi_reliable;
-  VoronoiNeighbours found =
-      (reliable ? reliable_neighbours : voronoi_neighbours)(scene, voronoi, progress);
-  NeighbourSets out{.objects = std::move(found.objects),
-                    .has_pairs = reliable,
-                    .pairs = std::move(found.triangles)};
-  if (reliable) return out;
-  for (const auto& [a, b] : out.objects)
-    out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
-  return out;
-}
-
 std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets) {
   std::vector<SetSize> out(scene.objects.size());
   for (std::size_t i = 0; i < sets.objects.size(); ++i) {
@@ -209,28 +201,17 @@ std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets) {
   return out;
 }
 
-std::uint64_t triangle_pairs_of(const NeighbourSets& sets) {
-  std::uint64_t out = sets.pairs.size();
-  for (const auto& [a, b] : sets.left) out += a * b;
-  return out;
-}
-
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b) {
   return std::binary_search(sets.objects.begin(), sets.objects.end(),
                             ObjectPair{std::min(a, b), std::max(a, b)});
-}
-bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
-                   const TrianglePair& triangles) {
-  return sets.has_pairs ? std::binary_search(sets.pairs.begin(), sets.pairs.end(), triangles)
-                        : has_objects(sets, a, b);
 }
 
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth) {
   if (!sets.left_out.empty() || truth.size() != scene.objects.size())
     throw std::logic_error("sizes_of: no sets, or the truth of another scene");
-  NeighbourSizes out{.object_pairs = sets.objects.size(),
-                     .triangle_pairs = triangle_pairs_of(sets)};
+  NeighbourSizes out{.object_pairs = sets.objects.size(), .triangle_pairs = sets.pairs.size()};
+  for (const auto& [a, b] : sets.left) out.triangle_pairs += a * b;
   const std::vector<SetSize> sizes = set_sizes(scene, sets);
   std::vector<std::uint64_t> with_objects, with_triangles;
   for (std::uint32_t object = 0; object < truth.size(); ++object) {
@@ -241,10 +222,12 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
     with_triangles.push_back(sizes[object].triangles);
     bool found = false;
     for (std::size_t i = 0; i < nearest.objects.size(); ++i) {
-      const std::uint32_t other = nearest.objects[i];
-      found |= has_objects(sets, object, other);
+      const bool has_object = has_objects(sets, object, nearest.objects[i]);
+      found |= has_object;
       ++out.nearest_pairs;
-      out.missed_pairs += !has_triangles(sets, object, other, nearest.triangles[i]);
+      out.missed_pairs +=
+          !(sets.has_pairs ? std::ranges::binary_search(sets.pairs, nearest.triangles[i])
+                           : has_object);
     }
     out.missed += !found;
   }

@@ -34,15 +34,12 @@ std::string to_string(NeighbourMethod method);
 /// Whether the method has a resolution: true for the two diagrams.
 bool has_cells(NeighbourMethod method);
 
-/// The most pairs of triangles that the reliable form may keep here; they take 268 MB.
-constexpr std::uint64_t kMostNeighbourPairs = std::uint64_t{1} << 25;
-
 struct NeighbourOptions {
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 64;   // of the diagrams, in cells along the longest side of the scene
   double widening = 1;   // of the reliable form (VoronoiOptions)
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
-  std::uint64_t most_pairs = kMostNeighbourPairs;  // VoronoiOptions::most_pairs
+  std::uint64_t most_pairs = std::uint64_t{1} << 25;  // VoronoiOptions::most_pairs; 268 MB
 };
 
 /// The sets that a method leaves. Either `pairs` or `left` holds the triangles.
@@ -61,34 +58,24 @@ struct NeighbourSets {
 NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
                              const Progress& progress = {});
 
-/// The same for a diagram, but throws Error also if there are no sets, as voronoi_neighbours() and
-/// reliable_neighbours() do.
-/// Precondition: has_cells(options.method).
-NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
-                           const Progress& progress = {});
-
 /// The set of one object: how many other objects, and triangles of other objects.
 struct SetSize {
   std::uint64_t objects = 0, triangles = 0;
 };
 /// One value per object of the scene.
 std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
-/// The pairs of triangles that are left.
-std::uint64_t triangle_pairs_of(const NeighbourSets& sets);
 
 /// Whether the pair of objects is left, in either order.
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
-/// Whether the pair of triangles of these objects is left. If the sets hold no pairs of triangles,
-/// the pair of objects decides.
-bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
-                   const TrianglePair& triangles);
 
-/// Sizes of the sets, and how many nearest neighbours they miss.
+/// Sizes of the sets, and how many nearest neighbours they miss. A nearest pair of triangles is
+/// missed if the sets do not hold it; if they hold no pairs of triangles, the pair of objects
+/// decides.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
-  std::uint64_t missed = 0;          // of these, objects whose sets hold no nearest one
+  std::uint64_t missed = 0;          // objects whose set holds none of their nearest objects
   std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, summed over the objects
-  std::uint64_t missed_pairs = 0;    // of these, not in the sets
+  std::uint64_t missed_pairs = 0;    // nearest pairs that the sets do not hold
   std::uint64_t object_pairs = 0;    // pairs of objects that are left
   std::uint64_t triangle_pairs = 0;  // pairs of triangles that are left
   /// How many objects, and triangles of other objects, the set of an object holds: the sum, the

@@ -1,23 +1,17 @@
 // Times frames in which the first object turns a little: new calls, one Collider and peers, all in
 // turn. The answers of each frame are compared with those of a new call.
-#include "experiments/measure/pose_bench.h"
+#include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
 #include "core/boxes/block.h"
 #include "experiments/library/farcull.h"
-#include "experiments/measure/harness.h"
-#include "experiments/peers/peer.h"
-#include "experiments/peers/pose_peer.h"
 #include "experiments/record/output.h"
-#include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -25,7 +19,7 @@ namespace {
 
 constexpr double kTurn = 0.01;  // radians a frame
 
-// Turns about the middle of the box, by a multiple of kTurn.
+// A rotation about the middle of the box by `frame` times kTurn.
 RigidMotion turned(const Box& box, int frame) {
   const Eigen::Matrix3d by =
       Eigen::AngleAxisd(frame * kTurn, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -60,7 +54,12 @@ std::vector<TrianglePair> pairs_of(const Result& result) {
   return out;
 }
 
-// A row of the result, and what runs for it.
+std::optional<double> cpu_ratio(const PoseBenchResult& result, const PoseBenchRow& row) {
+  if (!result.fastest_peer) return std::nullopt;
+  return row.cpu_ms / result.rows[*result.fastest_peer].cpu_ms;
+}
+
+// A row of the result, and the function that is timed for it.
 struct Contestant {
   PoseBenchRow row;
   PoseRun run;
@@ -120,9 +119,7 @@ PoseBenchResult bench_poses(const Scene& scene, const PoseBenchOptions& options,
   std::vector<Contestant> all = ours(scene, options, frames);
   PoseBenchResult result;
   for (const PosePeer& peer : peers) {
-    std::string reason = peer.missing;
-    if (reason.empty() && peer.refuses) reason = peer.refuses(scene);
-    if (!reason.empty()) {
+    if (const std::string reason = why_left_out(peer, scene); !reason.empty()) {
       if (options.peers != "all") throw Error("--peers", peer.name + ": " + reason, "leave it out");
       result.left_out.emplace_back(peer.name, reason);
       continue;
@@ -172,15 +169,6 @@ std::string disagreement_of(const PoseBenchResult& result) {
   return "";
 }
 
-namespace {
-
-std::optional<double> cpu_ratio(const PoseBenchResult& result, const PoseBenchRow& row) {
-  if (!result.fastest_peer) return std::nullopt;
-  return row.cpu_ms / result.rows[*result.fastest_peer].cpu_ms;
-}
-
-}  // namespace
-
 nlohmann::ordered_json to_json(const Scene& scene, const PoseBenchOptions& options,
                                const PoseBenchResult& result) {
   using Json = nlohmann::ordered_json;
@@ -207,19 +195,14 @@ std::string pose_bench_table(const Scene& scene, const PoseBenchOptions& options
   table.add({"", "ms", "low", "high", "n", "cold", "cpu", "build", "pairs", "lacking", "beyond",
              peer ? "x fastest" : "", peer ? "x cpu" : ""});
   for (const PoseBenchRow& row : result.rows) {
-    const auto ratio = [](const std::optional<double>& x) {
-      return x ? fmt::format("{:.3f}", *x) : "";
-    };
     std::vector<std::string> cells = time_cells(row);
-    cells.insert(
-        cells.end(),
-        {ms_text(row.cpu_ms), ms_text(row.build_ms), grouped(row.pairs), grouped(row.lacking),
-         grouped(row.beyond), ratio(ratio_to_fastest(result, row)), ratio(cpu_ratio(result, row))});
+    cells.insert(cells.end(),
+                 {ms_text(row.cpu_ms), ms_text(row.build_ms), grouped(row.pairs),
+                  grouped(row.lacking), grouped(row.beyond),
+                  ratio_text(ratio_to_fastest(result, row)), ratio_text(cpu_ratio(result, row))});
     table.add(cells);
   }
-  out += table.text();
-  for (const auto& [name, reason] : result.left_out)
-    out += fmt::format("left out: {}: {}\n", name, reason);
+  out += table.text() + left_out_lines(result.left_out);
   out += fmt::format(
       "\nms: of a frame, in which {} turns by {} radians, median of n; low, high: its interval by "
       "the\nbootstrap; cold: the first frame; cpu: the same in time of the processor; build: what "

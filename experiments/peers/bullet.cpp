@@ -1,16 +1,12 @@
 // Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, over boxes that are made here.
 // Bullet's test of two triangles rounds, so it is not used: the leaves are candidates.
 //
-// Bullet's find_collision() is not called. It compares rounded centres and extents, with a
-// tolerance relative to the extents, so it can lose small boxes that touch far from the origin. It
-// also stores all pairs, and has one thread. Instead search_trees() visits the nodes with
-// btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
-// rounds boxes to the nearest of 65,535 steps, inward as well as outward.
+// Bullet's find_collision() is not called: it stores all pairs, has one thread, and compares
+// rounded centres and extents with a tolerance, so it can lose small boxes that touch far from the
+// origin. Instead search_trees() visits the nodes with btAABB::has_collision(), which does not
+// round. The quantized tree is not used: it rounds boxes inward as well as outward.
 #include <BulletCollision/Gimpact/btGImpactBvh.h>
 
-#include <algorithm>
-#include <memory>
-#include <span>
 #include <type_traits>
 
 #include "experiments/peers/peer.h"
@@ -19,11 +15,6 @@ namespace farcull {
 namespace {
 
 static_assert(std::is_same_v<btScalar, double>, "boxes in float would have to be rounded outward");
-
-std::string library() {
-  return "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-         std::to_string(BT_BULLET_VERSION % 100);
-}
 
 /// Gives Bullet the boxes while it builds a tree.
 class Boxes : public btPrimitiveManagerBase {
@@ -76,51 +67,43 @@ class BulletTree {
   std::uint32_t first_;
 };
 
-/// The pairs of boxes that overlap, found by a tree over the boxes.
-std::vector<TrianglePair> overlapping(std::span<const Box> boxes) {
-  std::vector<TrianglePair> pairs;
-  if (boxes.size() < 2) return pairs;
-  const BulletTree tree(boxes, 0);
-  descend(TreeTask<BulletTree>{&tree, &tree, 0, 0, true},
-          [&pairs](std::uint32_t a, std::uint32_t b) {
-            pairs.push_back({a, b});
-          });
-  return pairs;
-}
-
-BenchAnswer collide(const Scene& raw, unsigned threads) {
+BenchAnswer collide(const Scene& scene, unsigned threads) {
   const Stopwatch building;
-  const std::vector<Box> boxes = triangle_boxes(raw);
-  const std::vector<Box> of_all = object_boxes(raw, boxes);
-  const std::vector<std::uint32_t> objects = objects_with_triangles(raw);
+  const std::vector<Box> boxes = triangle_boxes(scene);
+  const std::vector<Box> of_all = object_boxes(scene, boxes);
+  const std::vector<std::uint32_t> objects = objects_with_triangles(scene);
   std::vector<Box> of_objects;
   for (const std::uint32_t o : objects) of_objects.push_back(of_all[o]);
   std::vector<std::unique_ptr<BulletTree>> trees(objects.size());
-  for_each_taken(objects.size(), 1, threads, [&](std::size_t i) {
-    const Object& object = raw.objects[objects[i]];
+  for_each_shared(objects.size(), threads, [&](std::size_t i) {
+    const Object& object = scene.objects[objects[i]];
     const auto mine = std::span(boxes).subspan(object.first_triangle, object.triangle_count);
     trees[i] = std::make_unique<BulletTree>(mine, object.first_triangle);
   });
   const double build_ms = building.ms();
 
-  PeerCandidates candidates(raw, threads, threads > 1);
+  PeerCandidates candidates(scene, threads, threads > 1);
   std::vector<TreeTask<BulletTree>> tasks;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (raw.objects[objects[i]].self) tasks.push_back({trees[i].get(), trees[i].get(), 0, 0, true});
+    if (scene.objects[objects[i]].self)
+      tasks.push_back({trees[i].get(), trees[i].get(), 0, 0, true});
   }
-  for (const TrianglePair& pair : overlapping(of_objects)) {
-    tasks.push_back({trees[pair.a].get(), trees[pair.b].get()});
+  if (objects.size() > 1) {
+    const BulletTree tree(of_objects, 0);
+    descend(TreeTask<BulletTree>{&tree, &tree, 0, 0, true}, [&](std::uint32_t a, std::uint32_t b) {
+      tasks.push_back({trees[a].get(), trees[b].get()});
+    });
   }
-  search_trees(raw, std::move(tasks), threads, candidates);
+  search_trees(scene, std::move(tasks), threads, candidates);
   return candidates.finish(build_ms);
 }
 
 }  // namespace
 
 LibraryPeers bullet_library() {
-  return {.broad = {{"bullet-gimpact", library(), "", [](unsigned threads) -> BenchRun {
-                       return [=](const Scene& scene) { return collide(scene, threads); };
-                     }}}};
+  const std::string library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+                              std::to_string(BT_BULLET_VERSION % 100);
+  return {.broad = {plain_peer("bullet-gimpact", library, collide)}};
 }
 
 }  // namespace farcull

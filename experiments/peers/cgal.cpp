@@ -13,13 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
-#include <utility>
 
-#include "core/base/stopwatch.h"
 #include "experiments/peers/peer.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -36,14 +32,6 @@ constexpr const char* kLibrary = "CGAL " CGAL_VERSION_STR;
 Triangle triangle(const std::array<Vec3, 3>& corners) {
   const auto& [a, b, c] = corners;
   return {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}};
-}
-
-using Runner = BenchAnswer (*)(const Scene&, unsigned threads);
-
-Peer peer(const char* name, Runner run) {
-  return {name, kLibrary, "", [run](unsigned threads) -> BenchRun {
-            return [run, threads](const Scene& scene) { return run(scene, threads); };
-          }};
 }
 
 constexpr std::ptrdiff_t kUntuned = 10;  // CGAL's default cutoff
@@ -70,20 +58,16 @@ Handles handles(const std::vector<PeerBox>& boxes) {
   return all;
 }
 
-std::vector<PeerBox> numbered(const std::vector<Box>& boxes) {
-  std::vector<PeerBox> all;
-  all.reserve(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i) all.push_back({boxes[i], i});
-  return all;
-}
-
 /// Joins all boxes at once, as the manual calls box_intersection_d.
 template <std::ptrdiff_t cutoff>
 BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
   PeerCandidates candidates(raw, threads, false);
   const PeerScene scene(raw);
   if (!scene.has_pairs()) return candidates.finish();
-  const std::vector<PeerBox> boxes = numbered(scene.boxes);
+  std::vector<PeerBox> boxes;
+  boxes.reserve(scene.boxes.size());
+  for (const Box& box : scene.boxes)
+    boxes.push_back({box, static_cast<std::uint32_t>(boxes.size())});
   Handles all = handles(boxes);
   PeerCandidates::Part& part = candidates.part();
   if (scene.two_sides) {
@@ -146,7 +130,7 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
       CGAL::box_self_intersection_d(
           of_first.begin(), of_first.end(),
           [&](const PeerBox* a, const PeerBox* b) {
-            if (!share_vertex(raw, a->index, b->index)) add(a, b);
+            if (scene.counts(a->index, b->index)) add(a, b);
           },
           kTuned);
       return;
@@ -156,7 +140,7 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
     CGAL::box_intersection_d(of_first.begin(), of_first.end(), of_second.begin(), of_second.end(),
                              add, kTuned);
   };
-  for_each_taken(meeting.size(), 1, parallel ? threads : 1, join);
+  for_each_shared(meeting.size(), parallel ? threads : 1, join);
   return candidates.finish();
 }
 
@@ -179,18 +163,12 @@ struct Walk {
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
-  const auto count = static_cast<std::uint32_t>(raw.triangles.size());
-  std::uint32_t begin = 0, end = count;  // the triangles in the tree
-  if (scene.two_sides) {
-    if (scene.second < count - scene.second) {
-      end = scene.second;
-    } else {
-      begin = scene.second;
-    }
-  }
+  const std::size_t count = raw.triangles.size();
+  std::size_t begin = 0, end = count;  // the triangles in the tree
+  if (scene.two_sides) (scene.second < count - scene.second ? end : begin) = scene.second;
   Triangles triangles;
   triangles.reserve(end - begin);
-  for (std::uint32_t t = begin; t < end; ++t) triangles.push_back(triangle(raw.corners(t)));
+  for (std::size_t t = begin; t < end; ++t) triangles.push_back(triangle(raw.corners(t)));
   std::optional<Tree> tree;
   if (scene.has_pairs()) {
     tree.emplace(triangles.cbegin(), triangles.cend());
@@ -204,14 +182,20 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
     if (scene.two_sides && t >= begin && t < end) return;
     PeerCandidates::Part& part = candidates.part();
     const auto found = [&](Triangles::const_iterator at) {
-      const auto other = begin + static_cast<std::uint32_t>(at - triangles.cbegin());
+      const auto other = static_cast<std::uint32_t>(begin + (at - triangles.cbegin()));
       if (scene.two_sides || (other > t && scene.counts(t, other))) part.add(t, other);
     };
     const CGAL::Bbox_3 box = (scene.two_sides ? triangle(raw.corners(t)) : triangles[i]).bbox();
     Walk<decltype(found)> walk{found};
     tree->traversal(box, walk);
   };
-  if (tree) for_each_taken(count, 256, threads, search);
+  constexpr std::size_t kBlock = 256;  // triangles that a thread takes at once
+  if (tree) {
+    for_each_shared((count + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
+      for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+        search(i);
+    });
+  }
   return candidates.finish(build_ms);
 }
 
@@ -284,7 +268,7 @@ std::vector<std::unique_ptr<TreeOfObject>> trees_of(const Scene& scene, unsigned
     out.push_back(std::make_unique<TreeOfObject>());
     out.back()->number = o;
   }
-  for_each_taken(out.size(), 1, threads, [&](std::size_t i) {
+  for_each_shared(out.size(), threads, [&](std::size_t i) {
     TreeOfObject& object = *out[i];
     const Object& of = scene.objects[object.number];
     object.triangles.reserve(of.triangle_count);
@@ -299,9 +283,26 @@ std::vector<std::unique_ptr<TreeOfObject>> trees_of(const Scene& scene, unsigned
   return out;
 }
 
-double root_within(double squared, double within) {
-  const double root = std::sqrt(squared);
-  return root <= within ? root : std::numeric_limits<double>::infinity();
+/// For each tree, the nearest other one. `most`: the largest squared distance that counts.
+std::vector<PeerDistance> nearest(const std::vector<std::unique_ptr<TreeOfObject>>& trees,
+                                  double most, unsigned threads) {
+  std::vector<PeerDistance> out(trees.size());
+  for_each_shared(trees.size(), threads, [&](std::size_t i) {
+    std::vector<std::pair<double, std::size_t>> others;  // by gap, so that near objects come first
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      if (k != i) others.emplace_back(squared_gap(trees[i]->box, trees[k]->box), k);
+    }
+    std::sort(others.begin(), others.end());
+    out[i] = {trees[i]->number, trees[i]->number, most};
+    for (const auto& [gap, k] : others) {
+      if (gap >= out[i].distance) break;
+      const double found = squared_distance_of(*trees[i], *trees[k], out[i].distance);
+      if (found < out[i].distance) out[i] = {trees[i]->number, trees[k]->number, found};
+    }
+  });
+  std::erase_if(out, [](const PeerDistance& d) { return d.a == d.b; });
+  for (PeerDistance& d : out) d.distance = std::sqrt(d.distance);
+  return out;
 }
 
 PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsigned threads) {
@@ -309,15 +310,17 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   const auto trees = trees_of(scene, threads);
   PeerDistances answer{.build_ms = building.ms()};
   const Stopwatch asking;
-  std::vector<std::uint32_t> numbers;
-  for (const auto& tree : trees) numbers.push_back(tree->number);
-  answer.distances = distances_of_trees(
-      numbers, question.task, std::nextafter(question.within * question.within, HUGE_VAL), threads,
-      [&](std::size_t i, std::size_t k) { return squared_gap(trees[i]->box, trees[k]->box); },
-      [&](std::size_t i, std::size_t k, double least) {
-        return squared_distance_of(*trees[i], *trees[k], least);
-      },
-      [&](double squared) { return root_within(squared, question.within); });
+  const double most = std::nextafter(question.within * question.within, HUGE_VAL);
+  if (question.task == DistanceTask::nearest) {
+    answer.distances = nearest(trees, most, threads);
+  } else {
+    answer.distances = distances_of_pairs(
+        objects_with_triangles(scene), threads, [&](std::size_t i, std::size_t k) {
+          return std::sqrt(squared_distance_of(*trees[i], *trees[k], most));
+        });
+  }
+  std::erase_if(answer.distances,
+                [&](const PeerDistance& d) { return d.distance > question.within; });
   answer.query_ms = asking.ms();
   return answer;
 }
@@ -325,18 +328,15 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
 }  // namespace
 
 LibraryPeers cgal_library() {
-  LibraryPeers out;
-  out.broad = {peer("cgal-boxes", join_boxes<kUntuned>),
-               peer("cgal-boxes-2000", join_boxes<kTuned>),
-               peer("cgal-object-pairs", join_object_pairs), peer("cgal-aabb", search_tree)};
-  out.distances = {{.name = "cgal-aabb",
-                    .library = kLibrary,
-                    .run = distances,
-                    .refuses = [](const Scene& scene) {
-                      return refuse_degenerate(
-                          scene, "its tree and distances take no degenerate triangle");
-                    }}};
-  return out;
+  const auto refuses = [](const Scene& scene) {
+    return refuse_degenerate(scene, "its tree and distances take no degenerate triangle");
+  };
+  return {.broad = {plain_peer("cgal-boxes", kLibrary, join_boxes<kUntuned>),
+                    plain_peer("cgal-boxes-2000", kLibrary, join_boxes<kTuned>),
+                    plain_peer("cgal-object-pairs", kLibrary, join_object_pairs),
+                    plain_peer("cgal-aabb", kLibrary, search_tree)},
+          .distances = {
+              {.name = "cgal-aabb", .library = kLibrary, .run = distances, .refuses = refuses}}};
 }
 
 }  // namespace farcull

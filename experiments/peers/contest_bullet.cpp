@@ -12,9 +12,7 @@
 
 #include <memory>
 
-#include "core/scene/scene.h"
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {
@@ -25,12 +23,10 @@ constexpr const char* kType = "double";
 constexpr const char* kType = "float";
 #endif
 
-enum class Margin { none, by_default };
-
 /// An object in Bullet. Bullet keeps pointers to the arrays of this class.
 class Body {
  public:
-  Body(const Scene& scene, const Object& object, Margin margin) {
+  Body(const Scene& scene, const Object& object, bool with_margin) {
     const auto [first, last] = vertices_of(scene, object);
     for (std::uint32_t v = first; v <= last; ++v) {
       for (const double x : scene.vertices[v]) vertices_.push_back(static_cast<btScalar>(x));
@@ -43,7 +39,7 @@ class Body {
         static_cast<int>(object.triangle_count), indices_.data(), 3 * sizeof(int),
         static_cast<int>(last - first + 1), vertices_.data(), 3 * sizeof(btScalar));
     shape_ = std::make_unique<btGImpactMeshShape>(arrays_.get());
-    if (margin == Margin::none) shape_->setMargin(0);
+    if (!with_margin) shape_->setMargin(0);
     shape_->updateBound();
     object_ = std::make_unique<btCollisionObject>();
     object_->setCollisionShape(shape_.get());
@@ -98,23 +94,18 @@ class World {
   btCollisionWorld world_;
 };
 
-World& world() {
-  static World one;
-  return one;
-}
-
-template <Margin margin>
-std::vector<TrianglePair> meshes(const Scene& scene) {
+std::vector<TrianglePair> meshes(const Scene& scene, bool with_margin) {
   if (has_self(scene)) throw Refusal("GImpact tests no mesh against itself");
+  static World world;
   std::vector<std::unique_ptr<Body>> bodies;
   for (const Object& object : scene.objects)
-    bodies.push_back(std::make_unique<Body>(scene, object, margin));
+    bodies.push_back(std::make_unique<Body>(scene, object, with_margin));
   std::vector<TrianglePair> out;
   for_each_object_pair(scene, [&](const Object& a, const Object& b) {
     const auto body = [&](const Object& of) -> Body& {
       return *bodies[&of - scene.objects.data()];
     };
-    for (const auto& [t, u] : world().contacts(body(a), body(b))) {
+    for (const auto& [t, u] : world.contacts(body(a), body(b))) {
       out.push_back({a.first_triangle + static_cast<std::uint32_t>(t),
                      b.first_triangle + static_cast<std::uint32_t>(u)});
     }
@@ -122,22 +113,16 @@ std::vector<TrianglePair> meshes(const Scene& scene) {
   return out;
 }
 
-template <Margin margin>
-bool pair(const SuitePair& asked) {
-  return !meshes<margin>(two_objects(asked)).empty();
-}
-
-// apart: how far apart triangles may be and still be reported, in units.
-template <Margin margin>
-Contestant contestant(const std::string& name, double apart) {
-  return {.card = {.name = name + kType,
-                   .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-                              std::to_string(BT_BULLET_VERSION % 100),
-                   .means = Means::crossing,
-                   .degenerate = false,
-                   .margin = apart},
-          .pair = pair<margin>,
-          .mesh = meshes<margin>};
+/// margin: how far apart triangles may be and still be reported, in units; 0: no shape has a
+/// margin.
+Contestant contestant(const std::string& name, double margin) {
+  ContestantCard card =
+      crossing_card(name + kType, "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+                                      std::to_string(BT_BULLET_VERSION % 100));
+  card.margin = margin;
+  const auto mesh = [margin](const Scene& scene) { return meshes(scene, margin > 0); };
+  const auto pair = [mesh](const SuitePair& asked) { return !mesh(two_objects(asked)).empty(); };
+  return {.card = card, .pair = pair, .mesh = mesh};
 }
 
 }  // namespace
@@ -147,6 +132,5 @@ int main(int argc, char** argv) {
   using namespace farcull;
   // 0.08: there are two shapes, and by the manual each has a margin of 0.04.
   return contest(argc, argv,
-                 {contestant<Margin::none>("bullet-gimpact-", 0),
-                  contestant<Margin::by_default>("bullet-gimpact-margin-", 0.08)});
+                 {contestant("bullet-gimpact-", 0), contestant("bullet-gimpact-margin-", 0.08)});
 }

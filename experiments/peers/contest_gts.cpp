@@ -2,7 +2,6 @@
 // edges and vertices of faces do not count. GTS has no other public test of two triangles.
 #include <gts.h>
 
-#include <array>
 #include <unordered_map>
 
 #include "experiments/peers/contestant.h"
@@ -75,15 +74,9 @@ bool pair(const SuitePair& asked) { return !meshes(scene_of(asked)).empty(); }
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  const std::string library = "GTS " + std::to_string(gts_major_version) + "." +
-                              std::to_string(gts_minor_version) + "." +
-                              std::to_string(gts_micro_version);
-  return contest(argc, argv,
-                 {{.card = {.name = "gts",
-                            .library = library,
-                            .means = Means::crossing,
-                            .degenerate = false,
-                            .neighbours = true},
-                   .pair = pair,
-                   .mesh = meshes}});
+  ContestantCard card = crossing_card("gts", "GTS " + std::to_string(gts_major_version) + "." +
+                                                 std::to_string(gts_minor_version) + "." +
+                                                 std::to_string(gts_micro_version));
+  card.neighbours = true;
+  return contest(argc, argv, {{.card = card, .pair = pair, .mesh = meshes}});
 }

@@ -2,6 +2,8 @@
 // calls libccd for shapes.
 #include <ccd/ccd.h>
 
+#include <algorithm>
+
 #include "experiments/peers/contestant.h"
 
 namespace farcull {
@@ -12,17 +14,11 @@ using Corners = std::array<Vec3, 3>;
 const Corners& triangle(const void* object) { return *static_cast<const Corners*>(object); }
 
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const Corners& corners = triangle(object);
-  const Vec3* best = nullptr;
-  double most = 0;
-  for (const Vec3& p : corners) {
-    const double along = p[0] * direction->v[0] + p[1] * direction->v[1] + p[2] * direction->v[2];
-    if (best == nullptr || along > most) {
-      best = &p;
-      most = along;
-    }
-  }
-  ccdVec3Set(out, (*best)[0], (*best)[1], (*best)[2]);
+  const auto along = [&](const Vec3& p) {
+    return p[0] * direction->v[0] + p[1] * direction->v[1] + p[2] * direction->v[2];
+  };
+  const Vec3& best = *std::ranges::max_element(triangle(object), {}, along);
+  ccdVec3Set(out, best[0], best[1], best[2]);
 }
 
 void centre(const void* object, ccd_vec3_t* out) {
@@ -48,19 +44,13 @@ bool pair(const SuitePair& asked) {
   return intersect(&asked.a, &asked.b, &ccd) != 0;
 }
 
-ContestantCard card(const char* name) {
-  return {.name = name,
-          .library = "libccd " FARCULL_CCD_VERSION,
-          .means = Means::crossing,
-          .degenerate = false};
-}
-
 }  // namespace
 }  // namespace farcull
 
 int main(int argc, char** argv) {
   using namespace farcull;
+  constexpr const char* kLibrary = "libccd " FARCULL_CCD_VERSION;
   return contest(argc, argv,
-                 {{.card = card("libccd-gjk"), .pair = pair<ccdGJKIntersect>},
-                  {.card = card("libccd-mpr"), .pair = pair<ccdMPRIntersect>}});
+                 {{.card = crossing_card("libccd-gjk", kLibrary), .pair = pair<ccdGJKIntersect>},
+                  {.card = crossing_card("libccd-mpr", kLibrary), .pair = pair<ccdMPRIntersect>}});
 }

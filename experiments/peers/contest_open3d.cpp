@@ -31,11 +31,7 @@ std::vector<TrianglePair> meshes(const Scene& scene) {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(argc, argv,
-                 {{.card = {.name = "open3d",
-                            .library = "Open3D " OPEN3D_VERSION,
-                            .means = Means::crossing,
-                            .degenerate = false},
-                   .pair = pair,
-                   .mesh = meshes}});
+  return contest(
+      argc, argv,
+      {{.card = crossing_card("open3d", "Open3D " OPEN3D_VERSION), .pair = pair, .mesh = meshes}});
 }

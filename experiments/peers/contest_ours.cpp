@@ -2,7 +2,6 @@
 // names, else on the cores of the CPU. Methods run as by `farcull run`, except that boxes is run by
 // the library (Collider::find()).
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include "experiments/library/farcull.h"
@@ -96,9 +95,8 @@ std::vector<TrianglePair> pairs_by_library(const Scene& scene) {
   return out;
 }
 
-using Finder = std::function<std::vector<TrianglePair>(const Scene&)>;
-
-Contestant contestant(ContestantCard card, const Finder& find) {
+Contestant contestant(ContestantCard card,
+                      const std::function<std::vector<TrianglePair>(const Scene&)>& find) {
   card.library = "farcull";
   card.source = "docs/methods.md and docs/reliability.md";
   return {.card = std::move(card),
@@ -106,8 +104,9 @@ Contestant contestant(ContestantCard card, const Finder& find) {
           .mesh = find};
 }
 
-Contestant of_options(const RunOptions& options, const std::string& says, const std::string& use) {
-  const Method method = options.method;
+Contestant of_method(Method method, const std::string& says, const std::string& use,
+                     const RadiusRule& radius = {}) {
+  const RunOptions options{.method = method, .radius = radius};
   return contestant({.name = to_string(method),
                      .neighbours = tests_self(method),
                      .guaranteed = !culls(method) || guaranteed(options),
@@ -116,14 +115,11 @@ Contestant of_options(const RunOptions& options, const std::string& says, const 
                      .use = use},
                     [options](const Scene& scene) { return pairs_by(options, scene); });
 }
-Contestant of_method(Method method, const std::string& says, const std::string& use) {
-  return of_options({.method = method}, says, use);
-}
 
 /// Control for "far misses none": far with a smaller radius, which must miss some pairs.
 Contestant far_at(const std::string& radius) {
-  Contestant out = of_options({.method = Method::far, .radius = parse_radius(radius)},
-                              "a control, which has to miss pairs", "nothing");
+  Contestant out =
+      of_method(Method::far, "a control, which has to miss pairs", "nothing", parse_radius(radius));
   out.card.name = "far-at-" + radius;
   out.card.call += " --radius " + radius;
   return out;
@@ -157,16 +153,6 @@ Contestant exact() {
   return out;
 }
 
-Contestant boxes_of_library(const std::string& says) {
-  return contestant({.name = "boxes",
-                     .neighbours = true,
-                     .guaranteed = true,
-                     .call = "farcull::Collider::find()",
-                     .says = says,
-                     .use = "where no pair may be missed"},
-                    pairs_by_library);
-}
-
 }  // namespace
 }  // namespace farcull
 
@@ -174,9 +160,16 @@ int main(int argc, char** argv) {
   using namespace farcull;
   ::setenv("LP_NUM_THREADS", "0", 0);  // as farcull does (docs/drivers.md)
   const char* const reliable = "misses no pair; exact tests decide what is left";
+  const Contestant boxes = contestant({.name = "boxes",
+                                       .neighbours = true,
+                                       .guaranteed = true,
+                                       .call = "farcull::Collider::find()",
+                                       .says = reliable,
+                                       .use = "where no pair may be missed"},
+                                      pairs_by_library);
   return contest(
       argc, argv,
-      {boxes_of_library(reliable), exact(),
+      {boxes, exact(),
        of_method(Method::far, reliable, "FAR (2004), with the radius of the error budget"),
        of_method(Method::i_collide, reliable, "few objects that move little"), far_at("0.9")});
 }

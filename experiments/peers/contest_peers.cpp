@@ -1,7 +1,6 @@
 // FCL and ODE with their own tests of two triangles, as contestants, and the distances of FCL and
 // CGAL.
 #include <algorithm>
-#include <memory>
 
 #include "experiments/peers/contestant.h"
 #include "experiments/peers/peer.h"
@@ -11,24 +10,15 @@ namespace {
 
 template <class AnyPeer>
 void require_taken(const AnyPeer& peer, const Scene& scene) {
-  const std::string why = peer.refuses ? peer.refuses(scene) : "";
-  if (!why.empty()) throw Refusal(why);
-}
-
-std::function<std::vector<TrianglePair>(const Scene&)> pairs_by(const Peer& peer) {
-  return [peer, run = std::make_shared<BenchRun>()](const Scene& scene) {
-    if (!*run) *run = peer.set_up(1);
-    require_taken(peer, scene);
-    return (*run)(scene).pairs;
-  };
+  if (const std::string why = why_left_out(peer, scene); !why.empty()) throw Refusal(why);
 }
 
 Contestant narrow(const Peer& peer) {
-  const auto pairs = pairs_by(peer);
-  return {.card = {.name = peer.name,
-                   .library = peer.library,
-                   .means = Means::crossing,
-                   .degenerate = false},
+  const auto pairs = [peer, run = peer.set_up(1)](const Scene& scene) {
+    require_taken(peer, scene);
+    return run(scene).pairs;
+  };
+  return {.card = crossing_card(peer.name, peer.library),
           .pair = [pairs](const SuitePair& pair) { return !pairs(scene_of(pair)).empty(); },
           .mesh = pairs};
 }
@@ -56,9 +46,8 @@ int main(int argc, char** argv) {
   }
   for (const DistancePeer& peer : distance_peers()) {
     if (!peer.missing.empty()) continue;
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Contestant& contestant) {
-      return contestant.card.name == peer.name;
-    });
+    const auto same = std::ranges::find(
+        all, peer.name, [](const Contestant& contestant) { return contestant.card.name; });
     if (same != all.end())
       same->distance = distance_by(peer);
     else if (peer.name == "cgal-aabb")

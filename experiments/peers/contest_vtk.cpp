@@ -11,7 +11,6 @@
 #include <vtkVersion.h>
 
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {
@@ -81,20 +80,17 @@ std::vector<TrianglePair> collision_scene(const Scene& scene) {
 
 bool collision_pair(const SuitePair& pair) { return !collision_scene(two_objects(pair)).empty(); }
 
-ContestantCard card(const char* name) {
-  return {.name = name,
-          .library = std::string("VTK ") + vtkVersion::GetVTKVersion(),
-          .means = Means::crossing,
-          .degenerate = false};
-}
-
 }  // namespace
 }  // namespace farcull
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(argc, argv,
-                 {{.card = card("vtk-collision"), .pair = collision_pair, .mesh = collision_scene},
-                  {.card = card("vtk-triangle"), .pair = triangles_intersect},
-                  {.card = card("vtk-intersection"), .pair = intersection_filter}});
+  const std::string library = std::string("VTK ") + vtkVersion::GetVTKVersion();
+  return contest(
+      argc, argv,
+      {{.card = crossing_card("vtk-collision", library),
+        .pair = collision_pair,
+        .mesh = collision_scene},
+       {.card = crossing_card("vtk-triangle", library), .pair = triangles_intersect},
+       {.card = crossing_card("vtk-intersection", library), .pair = intersection_filter}});
 }

@@ -3,18 +3,16 @@
 // standard error.
 #include "experiments/peers/contestant.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
+#include <cmath>
 #include <iostream>
-#include <new>
-#include <optional>
-#include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/text.h"
+#include "core/view/view.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 
@@ -24,17 +22,7 @@ namespace {
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
 /// The fields of a line, which tabs separate: its number, the question, and the data.
-using Fields = std::vector<std::string_view>;
-
-Fields fields_of(std::string_view line) {
-  Fields out;
-  for (std::size_t from = 0;;) {
-    const std::size_t at = line.find('\t', from);
-    out.push_back(line.substr(from, at - from));
-    if (at == std::string_view::npos) return out;
-    from = at + 1;
-  }
-}
+using Fields = std::vector<std::string>;
 
 struct NoQuestion : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -43,13 +31,12 @@ struct NoQuestion : std::runtime_error {
 template <class Number>
 Number number(std::string_view text) {
   if (const std::optional<Number> out = parse_number<Number>(text)) return *out;
-  throw NoQuestion("'" + std::string(text) + "' is no number");
+  throw NoQuestion(fmt::format("'{}' is no number", text));
 }
 
 /// Reads two triangles from the last 18 of `count` fields.
 SuitePair read_triangles(const Fields& fields, std::size_t count) {
-  if (fields.size() != count)
-    throw NoQuestion(std::string(fields[1]) + " has " + std::to_string(count) + " fields");
+  if (fields.size() != count) throw NoQuestion(fmt::format("{} has {} fields", fields[1], count));
   SuitePair out;
   for (std::size_t i = 0; i < 18; ++i)
     (i < 9 ? out.a : out.b)[i / 3 % 3][i % 3] = number<double>(fields[count - 18 + i]);
@@ -58,30 +45,26 @@ SuitePair read_triangles(const Fields& fields, std::size_t count) {
 
 SuitePair read_pair(const Fields& fields) {
   SuitePair out = read_triangles(fields, 21);
-  std::string_view shared = fields[2];
-  if (shared == "-") return out;
-  for (; shared.size() >= 3; shared.remove_prefix(std::min<std::size_t>(shared.size(), 4))) {
+  for (const std::string& corners : split_list(fields[2])) {
+    if (corners.size() < 3) continue;  // "-": no shared corner
     out.shared.push_back(
-        {static_cast<std::uint8_t>(shared[0] - '0'), static_cast<std::uint8_t>(shared[2] - '0')});
+        {static_cast<std::uint8_t>(corners[0] - '0'), static_cast<std::uint8_t>(corners[2] - '0')});
   }
   return out;
 }
 
-void add_mesh(const std::string& path, bool self, Scene& out) {
-  const Mesh mesh = load_mesh(path);
-  append_object(std::to_string(out.objects.size()), mesh.vertices, mesh.triangles, mesh.source_face,
-                out);
-  out.objects.back().self = self;
-}
-
 /// Loads the OBJ files that the fields from `first` to before `end` name, each as an object.
 Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool self) {
-  if (fields.size() < std::max(first + 1, end))
-    throw NoQuestion(std::string(fields[1]) + " lacks fields");
+  if (fields.size() < std::max(first + 1, end)) throw NoQuestion(fields[1] + " lacks fields");
   Scene out;
   out.name = "scene";
   try {
-    for (std::size_t i = first; i < end; ++i) add_mesh(std::string(fields[i]), self, out);
+    for (std::size_t i = first; i < end; ++i) {
+      const Mesh mesh = load_mesh(fields[i]);
+      append_object(std::to_string(i - first), mesh.vertices, mesh.triangles, mesh.source_face,
+                    out);
+      out.objects.back().self = self;
+    }
   } catch (const Error& error) {
     throw NoQuestion(error.what());
   }
@@ -90,7 +73,7 @@ Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool 
 
 /// Writes the whole text at once, so that the answer is there even if the next question ends the
 /// program.
-void answer(int to, const std::string& text) {
+void write_answer(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
     if (wrote <= 0) std::_Exit(kWrongCall);  // nobody reads the output
@@ -98,24 +81,16 @@ void answer(int to, const std::string& text) {
   }
 }
 
-class Timer {
- public:
-  std::string nanoseconds() const {
-    return std::to_string(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                              std::chrono::steady_clock::now() - since_)
-                              .count());
-  }
-
- private:
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-};
+std::string nanoseconds(const Stopwatch& since) {
+  return std::to_string(std::llround(1e6 * since.ms()));
+}
 
 /// The answer to a question of yes or no, with the time that it took.
 template <class Ask>
 std::string verdict(const std::string& begin, const Ask& ask) {
-  const Timer timer;
+  const Stopwatch watch;
   const bool yes = ask();
-  const std::string ns = timer.nanoseconds();
+  const std::string ns = nanoseconds(watch);
   return begin + (yes ? "1\t" : "0\t") + ns + "\n";
 }
 
@@ -143,19 +118,15 @@ std::string answer_clash(const Contestant& of, const Fields& fields, const std::
 
 std::string answer_mesh(const Contestant& of, const Fields& fields, const std::string& begin) {
   const Scene scene = read_scene(fields, 3, fields.size(), fields[2] == "1");
-  const Timer timer;
+  const Stopwatch watch;
   const std::vector<TrianglePair> found = of.mesh(scene);
-  const std::string ns = timer.nanoseconds();
+  const std::string ns = nanoseconds(watch);
   const std::vector<std::uint32_t> owner = owners(scene);
   std::string out;
-  for (const auto& [a, b] : found) {
-    out += begin + "pair";
-    for (const std::uint32_t t : {a, b}) {
-      out += "\t" + std::to_string(owner[t]) + "\t" +
-             std::to_string(t - scene.objects[owner[t]].first_triangle);
-    }
-    out += "\n";
-  }
+  const auto place = [&](std::uint32_t t) {
+    return fmt::format("\t{}\t{}", owner[t], t - scene.objects[owner[t]].first_triangle);
+  };
+  for (const auto& [a, b] : found) out += begin + "pair" + place(a) + place(b) + "\n";
   return out + begin + "done\t" + ns + "\n";
 }
 
@@ -216,14 +187,13 @@ std::string answer_card(const Contestant& contestant, const std::string& begin) 
 
 /// The answer, or a refusal if the library throws.
 std::string answer_line(const Contestant& contestant, const std::string& line) {
-  const Fields fields = fields_of(line);
+  const Fields fields = split_list(line, '\t');
   if (fields.size() < 2) throw NoQuestion("'" + line + "' is no question");
-  const std::string begin = std::string(fields[0]) + "\t";
-  const std::string_view what = fields[1];
+  const std::string begin = fields[0] + "\t";
   try {
-    if (what == "card") return answer_card(contestant, begin);
+    if (fields[1] == "card") return answer_card(contestant, begin);
     for (const Question& question : kQuestions) {
-      if (what == question.word && question.known(contestant))
+      if (fields[1] == question.word && question.known(contestant))
         return question.answer(contestant, fields, begin);
     }
     return begin + "refused\tit does not answer this kind of question\n";
@@ -249,7 +219,7 @@ int contest(int argc, char** argv, const std::vector<Contestant>& contestants) {
     if (contestant.card.name != name) continue;
     try {
       for (std::string line; std::getline(std::cin, line);)
-        answer(to, answer_line(contestant, line));
+        write_answer(to, answer_line(contestant, line));
       return 0;
     } catch (const std::bad_alloc&) {
       std::fputs("std::bad_alloc: out of memory\n", stderr);
@@ -261,6 +231,10 @@ int contest(int argc, char** argv, const std::vector<Contestant>& contestants) {
   }
   std::fprintf(stderr, "usage: %s NAME, one of%s\n", argv[0], names.c_str());
   return kWrongCall;
+}
+
+ContestantCard crossing_card(const std::string& name, const std::string& library) {
+  return {.name = name, .library = library, .means = Means::crossing, .degenerate = false};
 }
 
 void for_each_object_pair(const Scene& scene,

@@ -7,16 +7,10 @@
 // in double under the same names. And a program in any language can take part.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/scene/scene.h"
 #include "experiments/suite/label.h"
 
 namespace farcull {
@@ -41,6 +35,9 @@ struct ContestantCard {
   std::string source = {};  // where the documentation says so; may be empty
   std::string use = {};     // for which purpose it is the right choice
 };
+
+/// The card of a library that promises only pairs that cross, and takes no degenerate triangles.
+ContestantCard crossing_card(const std::string& name, const std::string& library);
 
 /// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
 /// documentation says that it is not made for the question.

@@ -1,27 +1,17 @@
-// Embree: rtcCollide as a broad phase.
+// Embree: rtcCollide as a broad phase, on hierarchies of user geometries, whose boxes in float are
+// rounded outward.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <memory>
-#include <span>
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
 #include "experiments/peers/peer.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 constexpr const char* kLibrary = "Embree " RTC_VERSION_STRING;
-
-RTCDevice new_device(unsigned threads) {
-  return rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
-}
 
 /// Throws Error if a call of Embree failed since the last check.
 void require_no_error(RTCDevice device) {
@@ -39,11 +29,9 @@ std::string refuses_large(const Scene& scene) {
   return "";
 }
 
-// The broad phase: hierarchies of user geometries, whose boxes in float are rounded outward.
-
-// For |x| < 2^127, these functions move x outward by more than its rounding to float. The step is
-// at least an ulp of f, f - ulp and f + ulp are floats, and rounding is monotone. kTiny is more
-// than half an ulp of subnormal floats. (This is faster than finding the nearest float beyond x.)
+// For |x| < 2^127, these functions move x outward by at least an ulp of f, the nearest float. That
+// is more than x was rounded by. For subnormal f, kTiny is at least an ulp. (Finding the nearest
+// float beyond x would take longer.)
 constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);
@@ -95,7 +83,8 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
 /// A device with two hierarchies. Each run builds them anew, in memory that is kept between runs.
 class Embree {
  public:
-  Embree(RTCBuildQuality quality, unsigned threads) : device_(new_device(threads)) {
+  Embree(RTCBuildQuality quality, unsigned threads)
+      : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
     for (RTCScene& scene : scenes_) {
       scene = rtcNewScene(device_);
       rtcSetSceneBuildQuality(scene, quality);

@@ -20,16 +20,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
 #include "experiments/peers/peer.h"
-#include "experiments/peers/pose_peer.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -37,11 +30,23 @@ namespace {
 
 constexpr const char* kLibrary = "FCL " FCL_VERSION;
 
-/// The hierarchy of one object; its primitive i is triangle first + i.
+/// The hierarchy of one object, with the interface for search_trees(). Primitive i is triangle
+/// first + i. The larger node is divided first, as in FCL.
 template <class Volume>
 struct Model {
   std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
   std::uint32_t first = 0;
+
+  bool is_leaf(int node) const { return hierarchy->getBV(node).isLeaf(); }
+  int left(int node) const { return hierarchy->getBV(node).leftChild(); }
+  int right(int node) const { return hierarchy->getBV(node).rightChild(); }
+  double size(int node) const { return hierarchy->getBV(node).bv.size(); }
+  std::uint32_t triangle(int leaf) const {
+    return first + static_cast<std::uint32_t>(hierarchy->getBV(leaf).primitiveId());
+  }
+  bool meets(int node, const Model& other, int other_node) const {
+    return hierarchy->getBV(node).overlap(other.hierarchy->getBV(other_node));
+  }
 };
 
 /// Builds the hierarchy of an object. Each coordinate is rounded to the nearest value of the
@@ -81,7 +86,7 @@ struct Objects {
 
   Objects(const Scene& scene, unsigned threads)
       : numbers(objects_with_triangles(scene)), models(numbers.size()), placed(numbers.size()) {
-    for_each_taken(numbers.size(), 1, threads, [&](std::size_t i) {
+    for_each_shared(numbers.size(), threads, [&](std::size_t i) {
       models[i] = model_of<Volume>(scene, scene.objects[numbers[i]]);
       placed[i] = std::make_unique<Placed>(models[i].hierarchy);
       placed[i]->setUserData(reinterpret_cast<void*>(i));
@@ -100,10 +105,9 @@ struct Objects {
     if (placed.size() < 2) return {};
     Manager manager;
     register_in(manager);
-    return meeting(manager);
+    return meeting_in(manager);
   }
-  /// The same for the objects in the manager.
-  static std::vector<IndexPair> meeting(const Manager& manager) {
+  static std::vector<IndexPair> meeting_in(const Manager& manager) {
     std::vector<IndexPair> pairs;
     manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
       static_cast<std::vector<IndexPair>*>(data)->emplace_back(index_of(a), index_of(b));
@@ -117,30 +121,6 @@ struct Objects {
   std::vector<std::unique_ptr<Placed>> placed;
 };
 
-/// The hierarchy of an object with the interface for search_trees(). The larger node is divided
-/// first, as in FCL.
-template <class Volume>
-class FclTree {
- public:
-  explicit FclTree(const Model<Volume>& model)
-      : hierarchy_(model.hierarchy.get()), first_(model.first) {}
-
-  bool is_leaf(int node) const { return hierarchy_->getBV(node).isLeaf(); }
-  int left(int node) const { return hierarchy_->getBV(node).leftChild(); }
-  int right(int node) const { return hierarchy_->getBV(node).rightChild(); }
-  double size(int node) const { return hierarchy_->getBV(node).bv.size(); }
-  std::uint32_t triangle(int leaf) const {
-    return first_ + static_cast<std::uint32_t>(hierarchy_->getBV(leaf).primitiveId());
-  }
-  bool meets(int node, const FclTree& other, int other_node) const {
-    return hierarchy_->getBV(node).overlap(other.hierarchy_->getBV(other_node));
-  }
-
- private:
-  const fcl::BVHModel<Volume>* hierarchy_;
-  std::uint32_t first_;
-};
-
 /// Finds candidates by FCL's hierarchies and overlap tests of volumes: pairs of leaves that
 /// overlap. FCL's traversal has one thread and does not test a model with itself, so search_trees()
 /// is used in its place.
@@ -151,8 +131,8 @@ BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
   const double build_ms = building.ms();
 
   PeerCandidates candidates(scene, threads, threads > 1);
-  std::vector<FclTree<Volume>> trees(objects.models.begin(), objects.models.end());
-  std::vector<TreeTask<FclTree<Volume>>> tasks;
+  const std::vector<Model<Volume>>& trees = objects.models;
+  std::vector<TreeTask<Model<Volume>>> tasks;
   for (std::size_t i = 0; i < trees.size(); ++i) {
     if (scene.objects[objects.numbers[i]].self) tasks.push_back({&trees[i], &trees[i], 0, 0, true});
   }
@@ -219,7 +199,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
     if (scene.objects[objects.numbers[i]].self) tasks.emplace_back(i, i);
   }
   std::vector<std::vector<TrianglePair>> found(tasks.size());
-  for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
+  for_each_shared(tasks.size(), threads, [&](std::size_t i) {
     const auto [a, b] = tasks[i];
     collide_two(objects, a, b, found[i]);
     if (a != b) return;
@@ -255,9 +235,9 @@ PoseRun set_up_poses(const Scene& scene, unsigned threads) {
       objects.placed[i]->computeAABB();
     }
     kept->manager.update();
-    const std::vector<IndexPair> tasks = All::meeting(kept->manager);
+    const std::vector<IndexPair> tasks = All::meeting_in(kept->manager);
     std::vector<std::vector<TrianglePair>> found(tasks.size());
-    for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
+    for_each_shared(tasks.size(), threads, [&](std::size_t i) {
       collide_two(objects, tasks[i].first, tasks[i].second, found[i]);
     });
     return sorted(found);
@@ -315,22 +295,19 @@ struct Search {
 };
 
 template <class Scalar>
-std::vector<PeerDistance> nearest(const Objects<fcl::OBBRSS<Scalar>>& objects, double within,
+std::vector<PeerDistance> nearest(const Objects<fcl::OBBRSS<Scalar>>& objects, Scalar most,
                                   unsigned threads) {
   const std::size_t count = objects.numbers.size();
   if (count < 2) return {};
   typename Objects<fcl::OBBRSS<Scalar>>::Manager manager;
   objects.register_in(manager);
   std::vector<PeerDistance> out(count);
-  for_each_taken(count, 1, threads, [&](std::size_t i) {
-    Search<Scalar> search{&objects, i, i, most_of<Scalar>(within)};
+  for_each_shared(count, threads, [&](std::size_t i) {
+    Search<Scalar> search{&objects, i, i, most};
     manager.distance(objects.placed[i].get(), &search, Search<Scalar>::visit);
-    out[i] = {objects.numbers[i], objects.numbers[search.nearest],
-              search.nearest == i ? std::numeric_limits<double>::infinity() : search.least};
+    out[i] = {objects.numbers[i], objects.numbers[search.nearest], search.least};
   });
-  std::erase_if(out, [within](const PeerDistance& d) {
-    return d.distance > within || std::isinf(d.distance);
-  });
+  std::erase_if(out, [](const PeerDistance& d) { return d.a == d.b; });
   return out;
 }
 
@@ -340,18 +317,16 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   const Objects<fcl::OBBRSS<Scalar>> objects(scene, threads);
   PeerDistances answer{.build_ms = building.ms()};
   const Stopwatch asking;
+  const Scalar most = most_of<Scalar>(question.within);
   if (question.task == DistanceTask::nearest) {
-    answer.distances = nearest<Scalar>(objects, question.within, threads);
+    answer.distances = nearest(objects, most, threads);
   } else {
-    answer.distances = distances_of_trees(
-        objects.numbers, question.task, most_of<Scalar>(question.within), threads,
-        [](std::size_t, std::size_t) { return Scalar(0); },
-        [&](std::size_t i, std::size_t k, Scalar most) { return distance_of(objects, i, k, most); },
-        [&](Scalar found) {
-          const double distance = found;
-          return distance > question.within ? std::numeric_limits<double>::infinity() : distance;
-        });
+    answer.distances = distances_of_pairs(
+        objects.numbers, threads,
+        [&](std::size_t i, std::size_t k) -> double { return distance_of(objects, i, k, most); });
   }
+  std::erase_if(answer.distances,
+                [&](const PeerDistance& d) { return d.distance > question.within; });
   answer.query_ms = asking.ms();
   return answer;
 }
@@ -362,27 +337,20 @@ std::string refuses(const Scene& scene) {
   return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
 }
 
-Peer peer(const char* name, BenchAnswer (*run)(const Scene&, unsigned)) {
-  return {name, kLibrary, "", [run](unsigned threads) -> BenchRun {
-            return [=](const Scene& scene) { return run(scene, threads); };
-          }};
-}
-
 }  // namespace
 
 LibraryPeers fcl_library() {
-  LibraryPeers out{
-      .broad = {peer("fcl-obb", candidates_of<fcl::OBBd>)},
-      .narrow = {peer("fcl-float", collide<float>), peer("fcl-double", collide<double>)}};
-  out.broad[0].refuses = refuses;
-  out.distances = {
-      {.name = "fcl-double", .library = kLibrary, .run = distances<double>, .refuses = refuses},
-      {.name = "fcl-float",
-       .library = kLibrary,
-       .comparable = false,
-       .run = distances<float>,
-       .refuses = refuses}};
-  return out;
+  return {
+      .broad = {plain_peer("fcl-obb", kLibrary, candidates_of<fcl::OBBd>, refuses)},
+      .narrow = {plain_peer("fcl-float", kLibrary, collide<float>),
+                 plain_peer("fcl-double", kLibrary, collide<double>)},
+      .distances = {
+          {.name = "fcl-double", .library = kLibrary, .run = distances<double>, .refuses = refuses},
+          {.name = "fcl-float",
+           .library = kLibrary,
+           .comparable = false,
+           .run = distances<float>,
+           .refuses = refuses}}};
 }
 
 PosePeer fcl_poses() {

@@ -9,14 +9,9 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdarg>
 #include <cstdio>
-#include <memory>
-#include <span>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "core/base/error.h"
 #include "experiments/peers/peer.h"
@@ -49,9 +44,9 @@ void start_ode() {
   }
 }
 
-/// The merged contacts of two objects. For each merge ODE calls back twice: for the first object
-/// and then for the second. Each call names this object's triangle in the contact that ODE already
-/// has (`had`) and in the contact that is merged into it (`merged`).
+/// The merged contacts of two objects. For each merge ODE calls note_merged() twice: for the first
+/// object and then for the second. Each call names that object's triangle in the contact that ODE
+/// already has (`had`) and in the contact that is merged into it (`merged`).
 struct Merged {
   dGeomID first = nullptr;
   int had = 0;
@@ -126,33 +121,23 @@ std::vector<std::pair<const Model*, const Model*>> meeting(
   return pairs;
 }
 
-/// The pairs of triangles that the contacts of two objects name, each once.
-class Contacts {
- public:
-  explicit Contacts(Merged& merged) : merged_(merged), contacts_(kMostContacts) {}
-
-  void add(const Model& a, const Model& b, std::vector<TrianglePair>& pairs) {
-    merged_.first = a.geom();
-    merged_.pairs.clear();
-    const int count =
-        dCollide(a.geom(), b.geom(), kMostContacts, contacts_.data(), sizeof(dContactGeom));
-    for (int i = 0; i < count; ++i) {
-      merged_.pairs.emplace_back(contacts_[i].side1, contacts_[i].side2);
-    }
-    std::sort(merged_.pairs.begin(), merged_.pairs.end());
-    const auto end = std::unique(merged_.pairs.begin(), merged_.pairs.end());
-    for (auto at = merged_.pairs.begin(); at != end; ++at) {
-      const std::uint32_t t = a.triangle(at->first), u = b.triangle(at->second);
-      pairs.push_back({std::min(t, u), std::max(t, u)});
-    }
+/// Adds the pairs of triangles that the contacts of two objects name. contacts: kMostContacts of
+/// them, to be overwritten.
+void add_pairs(const Model& a, const Model& b, Merged& merged, std::vector<dContactGeom>& contacts,
+               std::vector<TrianglePair>& pairs) {
+  merged.first = a.geom();
+  merged.pairs.clear();
+  const int count =
+      dCollide(a.geom(), b.geom(), kMostContacts, contacts.data(), sizeof(dContactGeom));
+  for (int i = 0; i < count; ++i) merged.pairs.emplace_back(contacts[i].side1, contacts[i].side2);
+  for (const auto& [of_a, of_b] : merged.pairs) {
+    const std::uint32_t t = a.triangle(of_a), u = b.triangle(of_b);
+    pairs.push_back({std::min(t, u), std::max(t, u)});
   }
+}
 
- private:
-  Merged& merged_;
-  std::vector<dContactGeom> contacts_;
-};
-
-BenchAnswer collide(const Scene& scene) {
+/// ODE's collider has one state for all threads, so it runs on one thread.
+BenchAnswer collide(const Scene& scene, unsigned) {
   start_ode();
   BenchAnswer answer;
   Merged merged;
@@ -162,8 +147,8 @@ BenchAnswer collide(const Scene& scene) {
     models.push_back(std::make_unique<Model>(scene, scene.objects[o], merged));
   answer.build_ms = building.ms();
   const Stopwatch finding;
-  Contacts contacts(merged);
-  for (const auto& [a, b] : meeting(models)) contacts.add(*a, *b, answer.pairs);
+  std::vector<dContactGeom> contacts(kMostContacts);
+  for (const auto& [a, b] : meeting(models)) add_pairs(*a, *b, merged, contacts, answer.pairs);
   std::sort(answer.pairs.begin(), answer.pairs.end());
   answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
   answer.candidates_ms = finding.ms();
@@ -172,17 +157,13 @@ BenchAnswer collide(const Scene& scene) {
 }
 
 std::string refuses_self(const Scene& scene) {
-  return std::ranges::any_of(scene.objects, [](const Object& object) { return object.self; })
-             ? "it tests no object against itself"
-             : "";
+  return has_self(scene) ? "it tests no object against itself" : "";
 }
 
 }  // namespace
 
 LibraryPeers ode_library() {
-  // ODE's collider has one state for all threads, so it runs on one thread.
-  return {.narrow = {{"ode-trimesh", kLibrary, "", [](unsigned) -> BenchRun { return collide; },
-                      refuses_self}}};
+  return {.narrow = {plain_peer("ode-trimesh", kLibrary, collide, refuses_self)}};
 }
 
 }  // namespace farcull

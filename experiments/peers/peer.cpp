@@ -3,14 +3,15 @@
 #include "experiments/peers/peer.h"
 
 #include <algorithm>
-#include <span>
-#include <utility>
+#include <atomic>
+#include <cmath>
 
-#include "experiments/peers/pose_peer.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
+
+std::atomic<std::uint64_t> last_id = 0;  // of PeerCandidates
 
 struct Known {
   const char* name;
@@ -58,7 +59,7 @@ std::string why_missing(const Known& known) {
   return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
 }
 
-/// The peers that `list` names, from the member `part` of what the adapters give.
+/// The peers of a list. part: the member of LibraryPeers that holds them.
 template <class PeerKind>
 std::vector<PeerKind> listed(std::span<const Known> list,
                              std::vector<PeerKind> LibraryPeers::*part) {
@@ -89,16 +90,16 @@ std::vector<PosePeer> pose_peers() {
 #endif
 }
 
-// ---- the preparation of a scene and the collector of candidates ----
+// ---- shared by the adapters ----
 
-namespace {
-
-std::uint64_t next_id() {
-  static std::atomic<std::uint64_t> last = 0;
-  return ++last;
+Peer plain_peer(const std::string& name, const std::string& library,
+                BenchAnswer (*run)(const Scene&, unsigned threads),
+                std::function<std::string(const Scene&)> refuses) {
+  const auto set_up = [run](unsigned threads) -> BenchRun {
+    return [run, threads](const Scene& scene) { return run(scene, threads); };
+  };
+  return {name, library, "", set_up, std::move(refuses)};
 }
-
-}  // namespace
 
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene) {
   std::vector<std::uint32_t> out;
@@ -128,13 +129,11 @@ PeerScene::PeerScene(const Scene& scene, bool with_boxes)
 }
 
 bool PeerScene::has_pairs() const {
-  return !owner.empty() &&
-         (owner.front() != owner.back() || std::any_of(scene.objects.begin(), scene.objects.end(),
-                                                       [](const Object& o) { return o.self; }));
+  return !owner.empty() && (owner.front() != owner.back() || has_self(scene));
 }
 
 PeerCandidates::PeerCandidates(const Scene& scene, unsigned threads, bool parallel)
-    : scene_(scene), threads_(threads), parallel_(parallel), id_(next_id()) {}
+    : scene_(scene), threads_(threads), parallel_(parallel), id_(++last_id) {}
 
 PeerCandidates::~PeerCandidates() = default;
 
@@ -179,6 +178,22 @@ BenchAnswer PeerCandidates::finish(double build_ms) {
   answer.candidates_ms = std::max(0.0, since_.ms() - answer.exact_ms);
   parts_.clear();
   return answer;
+}
+
+std::vector<PeerDistance> distances_of_pairs(
+    const std::vector<std::uint32_t>& numbers, unsigned threads,
+    const std::function<double(std::size_t i, std::size_t k)>& distance) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    for (std::size_t k = i + 1; k < numbers.size(); ++k) pairs.emplace_back(i, k);
+  }
+  std::vector<PeerDistance> out(pairs.size());
+  for_each_shared(pairs.size(), threads, [&](std::size_t t) {
+    const auto [i, k] = pairs[t];
+    out[t] = {numbers[i], numbers[k], distance(i, k)};
+  });
+  std::erase_if(out, [](const PeerDistance& d) { return std::isinf(d.distance); });
+  return out;
 }
 
 }  // namespace farcull

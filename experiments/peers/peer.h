@@ -3,22 +3,20 @@
 // peers.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/boxes/rigid.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -43,8 +41,8 @@ struct Peer {
   std::string library;  // with its version, such as "CGAL 5.5.1"
   std::string missing;  // why it cannot run in this build; empty: it can
   std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
-  std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on this scene;
-                                                          // empty: it is. Null: exact on all
+  std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about the scene;
+                                                          // empty: it can. Null: about all
 };
 
 /// objects: every two objects with triangles. nearest: each such object and its nearest other one.
@@ -71,23 +69,36 @@ struct PeerDistances {
 
 /// A library that computes distances between the objects of a scene. All libraries round, so their
 /// distances may be off; `farcull bench --distances` measures by how much. Pairs of objects are
-/// divided over the threads; one query runs on one thread.
+/// divided over the threads; one query runs on one thread. The other members are as in Peer.
 struct DistancePeer {
-  std::string name;          // as in --peers
-  std::string library;       // with its version
-  std::string missing = {};  // why it cannot run in this build; empty: it can
-  /// False: the library answers in floats, so its time does not show how fast exact distances can
-  /// be.
-  bool comparable = true;
+  std::string name, library, missing = {};
+  bool comparable = true;  // false: the library answers in floats, so its time does not show how
+                           // fast exact distances can be
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
-  std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about this
-                                                          // scene; empty: it can. Null: about all
+  std::function<std::string(const Scene&)> refuses = {};
 };
+
+/// The pairs of triangles of different objects that collide after each object was moved, sorted.
+using PoseRun = std::function<std::vector<TrianglePair>(std::span<const RigidMotion> motions)>;
+
+/// A library that keeps models of the objects of a scene while these move as a whole (farcull bench
+/// --poses). It rounds, as narrow_peers() do. The other members are as in Peer.
+struct PosePeer {
+  std::string name, library = {}, missing = {};
+  std::function<PoseRun(const Scene&, unsigned threads)> set_up = {};  // makes the models
+  std::function<std::string(const Scene&)> refuses = {};
+};
+
+/// Why a peer of any kind cannot be asked about the scene; empty if it can.
+template <class AnyPeer>
+std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
+  return peer.missing.empty() && peer.refuses ? peer.refuses(scene) : peer.missing;
+}
 
 /// Broad phases, each followed by the exact decisions of verify/exact.h. They run at their best
 /// settings. All work that can be divided runs on the threads of the bench. Candidates are decided
-/// in bounded parts, so that tens of millions of overlapping boxes are never stored. The list
-/// includes peers that this build does not have.
+/// in bounded parts, so that tens of millions of overlapping boxes are never stored. This list and
+/// the three below include peers that this build does not have.
 std::vector<Peer> all_peers();
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
@@ -95,19 +106,19 @@ std::vector<Peer> all_peers();
 /// on coordinates rounded to that type. ode-trimesh is the contacts of ODE's dCollide().
 /// BenchAnswer::pairs has the pairs that the library reports, without neighbours (verify/exact.h)
 /// inside an object that is `self`; candidate_pairs is their number. One traversal runs on one
-/// thread; FCL's pairs of objects are divided over the threads. These peers are not among
-/// all_peers(), whose answers are exact. They guarantee nothing, so here `refuses` names scenes
-/// that a library cannot take at all.
+/// thread; FCL's pairs of objects are divided over the threads.
 std::vector<Peer> narrow_peers();
 
-/// Peers for distances, including those that this build does not have.
 ///   fcl-double, fcl-float  FCL's distance() of two OBBRSS hierarchies; with `nearest`, for objects
 ///                          that its dynamic tree of boxes finds
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
 ///                          squared_distance() of two triangles in doubles
 std::vector<DistancePeer> distance_peers();
 
-/// The peers that the adapter of one library adds to the three lists above.
+/// fcl-double is as in narrow_peers(), with hierarchies and broad phase kept from call to call.
+std::vector<PosePeer> pose_peers();
+
+/// The peers that the adapter of one library adds to the lists above.
 struct LibraryPeers {
   std::vector<Peer> broad = {}, narrow = {};
   std::vector<DistancePeer> distances = {};
@@ -117,15 +128,15 @@ LibraryPeers fcl_library();
 LibraryPeers embree_library();
 LibraryPeers bullet_library();
 LibraryPeers ode_library();
+PosePeer fcl_poses();
 
 // For the files that adapt a library: which triangles are tested with which, the exact decision of
-// candidates, the search of two trees, and the distances that a task asks for.
+// candidates, the search of two trees, and distances of all pairs of objects.
 
-/// True if the triangles are neighbours by index. (The exact decision finds neighbours by
-/// position.)
-inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
-  return share_index(scene.triangles[a], scene.triangles[b]);
-}
+/// A peer that needs no setup: each run calls run(scene, threads).
+Peer plain_peer(const std::string& name, const std::string& library,
+                BenchAnswer (*run)(const Scene&, unsigned threads),
+                std::function<std::string(const Scene&)> refuses = {});
 
 /// The numbers of the objects that have triangles, ascending.
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
@@ -145,9 +156,11 @@ struct PeerScene {
   bool two_sides = false;            // exactly two objects have triangles, and neither is self
   std::uint32_t second = 0;          // with two_sides, the second object's first triangle; else 0
 
-  /// Whether a pair of these triangles counts; neighbours by index do not.
+  /// Whether a pair of these triangles counts. Neighbours by index do not; the exact decision finds
+  /// neighbours by position.
   bool counts(std::uint32_t a, std::uint32_t b) const {
-    return owner[a] != owner[b] || (scene.objects[owner[a]].self && !share_vertex(scene, a, b));
+    return owner[a] != owner[b] ||
+           (scene.objects[owner[a]].self && !share_index(scene.triangles[a], scene.triangles[b]));
   }
   /// Whether any pair of triangles counts.
   bool has_pairs() const;
@@ -197,22 +210,8 @@ class PeerCandidates {
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
-/// Calls work(i) for 0 .. count - 1 on `threads` threads; a free thread takes the next `block` of
-/// these calls.
-template <class Work>
-void for_each_taken(std::size_t count, std::size_t block, unsigned threads, const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
-    for (std::size_t begin; (begin = next.fetch_add(block)) < count;) {
-      for (std::size_t i = begin; i < std::min(begin + block, count); ++i) work(i);
-    }
-  });
-}
-
-// Searches two trees at once for leaves whose volumes meet, on all threads. For libraries that have
-// trees, but only a traversal on one thread.
-
-/// A node of each of two trees; the leaves below them are to be compared.
+/// A node of each of two trees; the leaves below them are to be compared. For libraries that have
+/// trees, but only a traversal on one thread.
 ///
 /// Nodes are numbered by int, the root is 0. A Tree has the functions is_leaf(node), left(node),
 /// right(node), triangle(leaf), size(node), of which only the order matters, and
@@ -268,68 +267,25 @@ void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigne
                   PeerCandidates& candidates) {
   // Divides tasks until there are enough for all threads.
   const std::size_t enough = threads > 1 ? 64 * threads : 1;
-  const auto with = [&](const TreeTask<Tree>& task, PeerCandidates::Part& part) {
-    return [&scene, &part, self = task.first == task.second](std::uint32_t a, std::uint32_t b) {
-      if (!self || !share_vertex(scene, a, b)) part.add(a, b);
+  const auto add = [&](const TreeTask<Tree>& task) {
+    return [&scene, &part = candidates.part(), self = task.first == task.second](std::uint32_t a,
+                                                                                 std::uint32_t b) {
+      if (!self || !share_index(scene.triangles[a], scene.triangles[b])) part.add(a, b);
     };
   };
   while (!tasks.empty() && tasks.size() < enough) {
     std::vector<TreeTask<Tree>> finer;
-    for (const TreeTask<Tree>& task : tasks) {
-      step(task, with(task, candidates.part()),
-           [&finer](const TreeTask<Tree>& next) { finer.push_back(next); });
-    }
+    for (const TreeTask<Tree>& task : tasks)
+      step(task, add(task), [&finer](const TreeTask<Tree>& next) { finer.push_back(next); });
     tasks = std::move(finer);
   }
-  for_each_taken(tasks.size(), 1, threads,
-                 [&](std::size_t i) { descend(tasks[i], with(tasks[i], candidates.part())); });
+  for_each_shared(tasks.size(), threads, [&](std::size_t i) { descend(tasks[i], add(tasks[i])); });
 }
 
-/// The distances that a task asks for, sorted; the work is divided over the threads. numbers: of
-/// the objects that have triangles, ascending; i and k are indices into it. bound(i, k, least): the
-/// peer's result for two objects if it is below `least`; else any value that is `least` or more.
-/// most: `least` at the start. gap(i, k): a cheap lower bound of that result. distance(found): the
-/// result as a distance in world units, or infinity if the question does not ask for it.
-template <class Scalar, class Gap, class Bound, class Distance>
-std::vector<PeerDistance> distances_of_trees(const std::vector<std::uint32_t>& numbers,
-                                             DistanceTask task, Scalar most, unsigned threads,
-                                             const Gap& gap, const Bound& bound,
-                                             const Distance& distance) {
-  const std::size_t count = numbers.size();
-  std::vector<PeerDistance> out;
-  if (task == DistanceTask::objects) {
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = i + 1; k < count; ++k) pairs.emplace_back(i, k);
-    }
-    out.resize(pairs.size());
-    for_each_taken(pairs.size(), 1, threads, [&](std::size_t t) {
-      const auto [i, k] = pairs[t];
-      out[t] = {numbers[i], numbers[k], distance(bound(i, k, most))};
-    });
-  } else {
-    out.resize(count);
-    for_each_taken(count, 1, threads, [&](std::size_t i) {
-      std::vector<std::pair<Scalar, std::size_t>> others;
-      for (std::size_t k = 0; k < count; ++k) {
-        if (k != i) others.emplace_back(gap(i, k), k);
-      }
-      std::sort(others.begin(), others.end());  // by gap, so that near objects come first
-      Scalar least = most;
-      std::size_t nearest = i;
-      for (const auto& [apart, k] : others) {
-        if (apart >= least) break;
-        const Scalar found = bound(i, k, least);
-        if (!(found < least)) continue;
-        least = found;
-        nearest = k;
-      }
-      out[i] = {numbers[i], numbers[nearest],
-                nearest == i ? std::numeric_limits<double>::infinity() : distance(least)};
-    });
-  }
-  std::erase_if(out, [](const PeerDistance& d) { return std::isinf(d.distance); });
-  return out;
-}
+/// The finite distances of all pairs of objects, sorted; the work is divided over the threads.
+/// numbers: of the objects, ascending. distance(i, k): that of objects numbers[i] and numbers[k].
+std::vector<PeerDistance> distances_of_pairs(
+    const std::vector<std::uint32_t>& numbers, unsigned threads,
+    const std::function<double(std::size_t i, std::size_t k)>& distance);
 
 }  // namespace farcull

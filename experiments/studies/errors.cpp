@@ -6,15 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <stdexcept>
-#include <string>
 #include <tuple>
-#include <variant>
 
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 #include "experiments/system/machine.h"
 
 namespace farcull {
@@ -26,10 +21,11 @@ struct ErrorScene {
   std::string name;
   bool self = false;   // one object against itself, by S-CULLIDE and boxes
   bool drawn = false;  // drawn at random
-  bool again = false;  // another row has the same scene with another seed
+  bool again = false;  // drawn with another seed than the scene's own
 };
 
-// Smooth surfaces and scans, and randomly drawn scenes, these with several seeds.
+// objects: smooth surfaces and scans. drawn: randomly drawn scenes; each is taken with several
+// seeds.
 std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
                                   const std::vector<std::string>& drawn, bool quick) {
   std::vector<ErrorScene> out;
@@ -41,7 +37,8 @@ std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
   return out;
 }
 
-// Their triangles are small or few: at 4096 px, large ones take a software device minutes.
+// Scenes whose triangles are small or few: at 4096 px a software device takes minutes for large
+// ones.
 std::vector<ErrorScene> accuracy_scenes(bool quick) {
   if (quick) return scenes_of({"two-tori", "mannequin-devil"}, {"needles:60"}, quick);
   return scenes_of({"two-tori", "two-spheres", "two-bunnies", "dragon-bunny", "mannequin-devil"},
@@ -52,16 +49,17 @@ std::vector<ErrorScene> accuracy_scenes(bool quick) {
 // no view can be skipped, and a run takes up to five times as long.
 constexpr int kMostOfForms = 1024;  // px
 
-// CULLIDE as published, and with its changes one by one and together. A scene that is drawn again
-// gets only the forms that miss little.
+// CULLIDE as published, and with its changes one by one and together. A scene with another seed
+// gets only the published form and the forms that miss little.
 std::vector<CullideForm> forms_of(const ErrorScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
+  const char* const both = "x,-x,y,-y,z,-z";  // directions of each axis
   if (scene.again) return {kPublishedForm, conservative, kStrictForm};
   std::vector<CullideForm> out = {
       kPublishedForm,
-      {.rounds = 1, .views = kBothDirections},
+      {.rounds = 1, .views = both},
       {.rounds = 1, .clear = ClearRule::all},
-      {.rounds = 1, .clear = ClearRule::all, .views = kBothDirections},
+      {.rounds = 1, .clear = ClearRule::all, .views = both},
       conservative,
       kStrictForm,
   };
@@ -75,14 +73,17 @@ void add_forms(const ErrorScene& scene, std::vector<Point>& out) {
   const std::vector<CullideForm> forms = forms_of(scene);
   for (int resolution = 64; resolution <= kMostOfForms; resolution *= 2) {
     for (const CullideForm& form : forms)
-      out.push_back(in_form(cullide_point(named, method, resolution), form));
+      out.push_back(cullide_point(named, method, resolution, form));
   }
   if (scene.self || scene.again) return;
   for (const double pixels : {1, 4, 16}) {
-    for (const CullideForm& form : forms)
-      out.push_back(at_mean_pixels(in_form(cullide_point(named, method, 0), form), pixels));
-    out.push_back(at_mean_pixels(cullide_point(named, method, 0), pixels));
-    out.push_back(at_mean_pixels(far_point(named, "obb", kBudgetRadius, 0), pixels));
+    const auto add = [&](RunPoint point) {
+      point.mean_pixels = pixels;
+      out.push_back(std::move(point));
+    };
+    for (const CullideForm& form : forms) add(cullide_point(named, method, 0, form));
+    add(cullide_point(named, method, 0));
+    add(far_point(named, "obb", kBudgetRadius, 0));
   }
 }
 
@@ -95,16 +96,15 @@ std::vector<Point> accuracy_grid(const GridChoice& choice) {
     for (int resolution = 64; resolution <= most; resolution *= 2) {
       if (scene.self) {
         out.push_back(cullide_point(named, s_cullide, resolution));
-      } else {
-        out.push_back(cullide_point(named, cullide, resolution));
-        if (!scene.again) out.push_back(cullide_point(named, quick_cullide, resolution));
-        for (const std::string offset : {"obb", "exact"}) {
-          if (scene.again && offset == "exact") continue;
-          out.push_back(far_point(named, offset, kBudgetRadius, resolution));
-          if (!scene.again && offset == "obb" && resolution <= kMostOfForms)
-            out.push_back(far_point(named, offset, kPublishedRadius, resolution));
-        }
+        continue;
       }
+      out.push_back(cullide_point(named, cullide, resolution));
+      if (!scene.again) out.push_back(cullide_point(named, quick_cullide, resolution));
+      out.push_back(far_point(named, "obb", kBudgetRadius, resolution));
+      if (scene.again) continue;
+      if (resolution <= kMostOfForms)
+        out.push_back(far_point(named, "obb", kPublishedRadius, resolution));
+      out.push_back(far_point(named, "exact", kBudgetRadius, resolution));
     }
     out.push_back(plain_point(named, boxes));
     if (!scene.self && !scene.again) out.push_back(plain_point(named, exact));
@@ -124,7 +124,7 @@ std::vector<ErrorScene> timed_scenes(bool quick) {
                    {"needles:100", "random-soup", "field"}, quick);
 }
 
-// Libraries followed by exact decisions, and FCL and ODE unchanged.
+// Libraries followed by exact decisions; and FCL and ODE with their own tests of two triangles.
 constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
                                   "fcl-double", "fcl-float", "ode-trimesh"};
 
@@ -137,20 +137,18 @@ void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution,
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
   if (scene.self) {
-    // One step per triangle: 2048 px would take as long as all other points together.
-    if (resolution <= 1024) {
-      for (const CullideForm& form : kForms)
-        add(in_form(cullide_point(named, s_cullide, resolution), form));
-    }
-  } else {
-    for (const CullideForm& form : kForms) {
-      if (form.rounds > 0) add(in_form(cullide_point(named, cullide, resolution), form));
-    }
-    add(cullide_point(named, cullide, resolution));
-    add(cullide_point(named, quick_cullide, resolution));
-    add(far_point(named, "obb", kBudgetRadius, resolution));
-    add(far_point(named, "exact", kBudgetRadius, resolution));
+    // S-CULLIDE takes a step per triangle: 2048 px would take as long as all other points together.
+    if (resolution > 1024) return;
+    for (const CullideForm& form : kForms) add(cullide_point(named, s_cullide, resolution, form));
+    return;
   }
+  for (const CullideForm& form : kForms) {
+    if (form.rounds > 0) add(cullide_point(named, cullide, resolution, form));
+  }
+  add(cullide_point(named, cullide, resolution));
+  add(cullide_point(named, quick_cullide, resolution));
+  add(far_point(named, "obb", kBudgetRadius, resolution));
+  add(far_point(named, "exact", kBudgetRadius, resolution));
 }
 
 std::vector<Point> timed_grid(const GridChoice& choice) {
@@ -186,78 +184,38 @@ std::vector<Point> headline_grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const char* name : {choice.quick ? "two-spheres" : "two-bunnies", "field"}) {
     const NamedScene scene{name};
-    for (const RunPoint& point :
-         {in_form(cullide_point(scene, cullide, kResolution), kPublishedForm),
-          in_form(cullide_point(scene, cullide, kResolution), kForms.back()),
-          far_point(scene, "obb", kBudgetRadius, kResolution),
-          far_point(scene, "exact", kBudgetRadius, kResolution), plain_point(scene, boxes),
-          plain_point(scene, exact)})
+    for (const RunPoint& point : {cullide_point(scene, cullide, kResolution, kPublishedForm),
+                                  cullide_point(scene, cullide, kResolution, kForms.back()),
+                                  far_point(scene, "obb", kBudgetRadius, kResolution),
+                                  far_point(scene, "exact", kBudgetRadius, kResolution),
+                                  plain_point(scene, boxes), plain_point(scene, exact)})
       out.emplace_back(repeated(point, choice.quick ? kRounds : 3 * kRounds));
   }
   return out;
 }
 
-}  // namespace
-
-Study headline_study() {
-  return {.name = "headline",
-          .title = "What each method misses, and how long it takes",
-          .question =
-              "How many colliding pairs do CULLIDE and FAR miss on two scenes, in which time, "
-              "beside methods that draw nothing?",
-          .grid = headline_grid,
-          .measure = measure_timed,
-          .plain = true};
-}
-
-Study accuracy_study() {
-  return {.name = "accuracy",
-          .title = "Missed collisions against resolution",
-          .question =
-              "How many colliding pairs and colliding triangles does each method miss against the "
-              "exact answer, do more pixels help, and does another form of CULLIDE?",
-          .grid = accuracy_grid,
-          .measure = measure_accuracy};
-}
-
-Study error_time_study() {
-  return {.name = "error-time",
-          .title = "Error against run time",
-          .question =
-              "What does each method get wrong, and how long does it take, against each other and "
-              "against the libraries that one would take instead?",
-          .grid = timed_grid,
-          .measure = measure_timed,
-          .library = library_of_peer,
-          .plain = true};
-}
-
 // ---- "stability" and "cloth" ----
 
-namespace {
-
 constexpr long kFrames = 500;  // of the cloth
-// Libraries whose own test of two triangles rounds.
-constexpr const char *kFloat = "fcl-float", *kDouble = "fcl-double";
 
 void add_between_objects(std::vector<Point>& out, const PointScene& scene, int resolution) {
-  const RunPoint published = cullide_point(scene, cullide, resolution);
   out.insert(out.end(),
-             {published, in_form(published, kStrictForm), PeerPoint{scene, kFloat},
-              PeerPoint{scene, kDouble}, far_point(scene, "obb", kBudgetRadius, resolution),
+             {cullide_point(scene, cullide, resolution),
+              cullide_point(scene, cullide, resolution, kStrictForm), PeerPoint{scene, "fcl-float"},
+              PeerPoint{scene, "fcl-double"}, far_point(scene, "obb", kBudgetRadius, resolution),
               far_point(scene, "exact", kBudgetRadius, resolution), plain_point(scene, boxes),
               plain_point(scene, exact)});
 }
 
 void add_against_itself(std::vector<Point>& out, const PointScene& scene, int resolution) {
   out.insert(out.end(),
-             {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, kFloat},
-              PeerPoint{scene, kDouble}, far_point(scene, "obb", kBudgetRadius, resolution),
+             {cullide_point(scene, s_cullide, resolution), PeerPoint{scene, "fcl-float"},
+              PeerPoint{scene, "fcl-double"}, far_point(scene, "obb", kBudgetRadius, resolution),
               plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
-// Each family from a harmless value to its extreme, with more values where CULLIDE begins to fail;
-// of offset and scale, where floats do.
+// Each family goes from a harmless value to its extreme, with more values where CULLIDE begins to
+// fail, or, for offset and scale, where floats begin to fail.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;
@@ -269,7 +227,7 @@ void add_contacts(std::vector<Point>& out, bool quick) {
       {"slivers", ratios},
       {"mixed", ratios},
       {"edge-on", ratios},
-      // 3e-14 px are an ulp.
+      // 3e-14 px is an ulp of the coordinates.
       {"overlap", {"2e0", "1e0", "8e-1", "6e-1", "3e-1", "2e-1", "1e-1", "1e-2", "3e-14", "0"}},
       {"gap", {"1e0", "1e-2", "1e-6", "3e-14"}},
       // A step of the depth buffer is 3e-5 px.
@@ -295,13 +253,6 @@ void add_cloth(std::vector<Point>& out, bool quick) {
     for (const long frame : frames)
       add_between_objects(out, ClothApart{name, frame}, kClothResolution);
   }
-}
-
-std::vector<Point> stability_grid(const GridChoice& choice) {
-  std::vector<Point> out;
-  add_contacts(out, choice.quick);
-  add_cloth(out, choice.quick);
-  return out;
 }
 
 PointResult measure_stability(const Point& point, MeasurementContext& lab) {
@@ -337,8 +288,6 @@ PointResult measure_stability(const Point& point, MeasurementContext& lab) {
   return out;
 }
 
-constexpr long kOfFar = 10;  // far tests every tenth frame
-
 std::vector<Point> cloth_grid(const GridChoice& choice) {
   const int triangles = choice.quick ? 200 : 20000;
   const long frames = choice.quick ? 12 : 500;
@@ -348,14 +297,14 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
     for (long frame = 0; frame < frames; ++frame) {
       const MotionFrame scene{name, frame, frames};
       out.emplace_back(plain_point(scene, boxes));
-      if (frame % kOfFar == 0)
+      if (frame % 10 == 0)  // far would take too long on every frame
         out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
     }
   }
   return out;
 }
 
-// A note of the simulation, by its name in builtin/papers.cpp.
+// The value of a note of the simulation. Throws std::logic_error if there is none of that name.
 double note(const FrameNotes& notes, const std::string& name) {
   for (const auto& [known, value] : notes.values) {
     if (known == name) return value;
@@ -403,6 +352,39 @@ PointResult measure_cloth(const Point& point, MeasurementContext& lab) {
 
 }  // namespace
 
+Study headline_study() {
+  return {.name = "headline",
+          .title = "What each method misses, and how long it takes",
+          .question =
+              "How many colliding pairs do CULLIDE and FAR miss on two scenes, in which time, "
+              "beside methods that draw nothing?",
+          .grid = headline_grid,
+          .measure = measure_timed,
+          .plain = true};
+}
+
+Study accuracy_study() {
+  return {.name = "accuracy",
+          .title = "Missed collisions against resolution",
+          .question =
+              "How many colliding pairs and colliding triangles does each method miss against the "
+              "exact answer, do more pixels help, and does another form of CULLIDE?",
+          .grid = accuracy_grid,
+          .measure = measure_accuracy};
+}
+
+Study error_time_study() {
+  return {.name = "error-time",
+          .title = "Error against run time",
+          .question =
+              "What does each method get wrong, and how long does it take, against each other and "
+              "against the libraries that one would take instead?",
+          .grid = timed_grid,
+          .measure = measure_timed,
+          .library = library_of_peer,
+          .plain = true};
+}
+
 Study stability_study() {
   return {.name = "stability",
           .title = "Scenes that go to an extreme",
@@ -411,7 +393,13 @@ Study stability_study() {
               "sizes differ by far, a view sees triangles edge-on, overlaps and distances shrink "
               "to ulps, the scene is far away or tiny, or cloth is stiff, and how much does "
               "culling then still remove?",
-          .grid = stability_grid,
+          .grid =
+              [](const GridChoice& choice) {
+                std::vector<Point> out;
+                add_contacts(out, choice.quick);
+                add_cloth(out, choice.quick);
+                return out;
+              },
           .measure = measure_stability,
           .library = library_of_peer};
 }

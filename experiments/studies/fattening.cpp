@@ -1,45 +1,34 @@
 // Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
 // bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
-// "precision" and "radius" test the lemmas and count misses for each format of the depth buffer,
-// each source of depth and each radius. They also count how often the published radius misses a
-// pair of randomly placed patches.
+// "precision" tests the lemmas for each format of the depth buffer and each source of depth.
+// "radius" tests them for each radius, and counts the pairs that FAR misses, also on randomly
+// placed patches.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/canvas/fatten.h"
 #include "core/native/canvas.h"
-#include "core/view/regions.h"
-#include "core/view/view.h"
 #include "experiments/lemma/lemma.h"
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 #include "offsets/offsets.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {
+namespace {
 
 // ---- "offsets" ----
 
-namespace {
-
-// The part of row `y` that is inside a convex quadrilateral, as the interval [from, to] of x; empty
-// if from > to.
+// The interval of x in which a convex quadrilateral covers the row `y`; empty if from > to.
 struct Span {
-  double from = 0, to = -1;
+  double from = HUGE_VAL, to = -HUGE_VAL;
 };
 
 Span span_at(const std::array<float, 8>& corners, double y) {
-  Span out{HUGE_VAL, -HUGE_VAL};
+  Span out;
   for (int i = 0; i < 4; ++i) {
     const double x0 = corners[2 * i], y0 = corners[2 * i + 1];
     const double x1 = corners[(2 * i + 2) % 8], y1 = corners[(2 * i + 3) % 8];
@@ -58,7 +47,7 @@ Span span_at(const std::array<float, 8>& corners, double y) {
   return out;
 }
 
-// Counts the elements from .. to - 1. Pixel centres are half-integers within the window.
+// The counts of the elements from .. to - 1. Coordinates of pixel centres are half-integers.
 Fragments count_in(const Drawables& drawables, const SolidProgram& program, const Window& window,
                    std::size_t from, std::size_t to) {
   Fragments out;
@@ -88,10 +77,9 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 
 using enum Method;
 
-// The same as in the study "scaling".
-constexpr int kRepeat = 3 * kRounds;
+constexpr int kRepeat = 3 * kRounds;  // as in the study "scaling"
 
-std::vector<Point> grid(const GridChoice& choice) {
+std::vector<Point> offsets_grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
       choice.quick ? std::vector<const char*>{"two-spheres", "needles:60"}
                    : std::vector<const char*>{"two-tori", "needles:100", "field", "two-bunnies"};
@@ -108,7 +96,7 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure(const Point& of, MeasurementContext& lab) {
+PointResult measure_offsets(const Point& of, MeasurementContext& lab) {
   const RunPoint& point = std::get<RunPoint>(of);
   Record record;
   PointResult out = measure_with_risk(point, lab, &record);
@@ -118,51 +106,11 @@ PointResult measure(const Point& of, MeasurementContext& lab) {
   return out;
 }
 
-}  // namespace
-
-Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset) {
-  const Fattener fattener = offset == "exact" ? minkowski_fattener() : obb_fattener();
-  const Regions regions = find_regions(scene);
-  const std::vector<View> views = parse_views(views_of(record.options));
-  Fragments sum;
-  for (std::size_t v = 0; v < views.size() && v < record.found.views().size(); ++v) {
-    const auto window = fit_window(views[v], regions.places, resolution_of(record.options));
-    if (!window) continue;
-    FattenCounts counts;
-    const Drawables drawables = fatten(scene, regions.triangles, *window, fattener,
-                                       record.found.views()[v].radius_px, counts);
-    const std::size_t chunks = chunks_for(drawables.elements(), 256);
-    std::vector<Fragments> parts(chunks);
-    for_chunks(drawables.elements(), chunks,
-               [&](std::size_t chunk, std::size_t from, std::size_t to) {
-                 parts[chunk] = count_in(drawables, fattener.solid, *window, from, to);
-               });
-    for (const Fragments& part : parts) {
-      sum.covered += part.covered;
-      sum.solid += part.solid;
-      sum.elements += part.elements;
-    }
-  }
-  return sum;
-}
-
-Study offsets_study() {
-  return {.name = "offsets",
-          .title = "Boxes, exact offsets and intervals",
-          .question =
-              "What do the three ways to bound a fattened triangle in a pixel (the box around it, "
-              "the Minkowski sum itself, the interval of its depths) keep, and at what cost?",
-          .grid = grid,
-          .measure = measure};
-}
-
 // ---- "precision" and "radius" ----
 
-namespace {
-
-// The native canvas with a depth buffer of 16 bits of fixed point; offers only depths(). It rounds
-// the nearest or farthest depth, which gives the nearest or farthest of the rounded depths, since
-// rounding is monotone.
+// The native canvas with a depth buffer of 16-bit fixed point; it does not offer run(). It rounds
+// the nearest or farthest depth. Since rounding is monotone, that is the nearest or farthest of the
+// rounded depths.
 class CoarseCanvas final : public Canvas {
  public:
   CoarseCanvas(DepthMode mode, const SolidProgram& solid)
@@ -203,7 +151,7 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel; those of the others are too small.
+// Generators of triangles whose depth varies inside a pixel. Triangles of the others are too small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
@@ -211,8 +159,9 @@ constexpr const char* kGenerators[] = {
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
   // Each side with its border makes a viewport of a power of two. 2^20 px is the largest depth of a
-  // window (core/view/view.h, fit_window). In that depth a step of 24 bits is longer than the chord
-  // of the ball at the corner of a pixel; in a depth of 2^13 px a step of 16 bits is.
+  // window (core/view/view.h, fit_window). In a window of that depth, a step of a 24-bit buffer is
+  // longer than the chord of the ball at the corner of a pixel; in a depth of 2^13 px, a step of a
+  // 16-bit buffer is.
   const std::vector<int> sides = choice.quick ? std::vector{508, 1020} : std::vector{508, 4092};
   const std::vector<double> depths =
       choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p13, 0x1p20};
@@ -247,38 +196,27 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure_precision(const Point& point, MeasurementContext& lab) {
-  return measure_lemma(std::get<LemmaPoint>(point), lab);
-}
-
-// Factors of the budget radius, including 1.
-std::vector<double> factors(bool quick) {
-  std::vector<double> out;
-  const int steps = quick ? 11 : 22;
-  for (int i = 0; i <= steps; ++i) {
-    const double factor = static_cast<double>(i) * 11 / steps / 10;
-    out.push_back(factor);
-    if (!quick && i == 18)
-      for (const double finer : {0.91, 0.92, 0.93, 0.94}) out.push_back(finer);
-    if (!quick && i == 19)
-      for (const double finer : {0.96, 0.97, 0.98, 0.985, 0.99, 0.995, 0.999}) out.push_back(finer);
-  }
-  return out;
-}
-
-// Factors rounded as they are written, so that a key read back gives the same number.
+// Factors on the budget radius from 0 to 1.1, more of them near 1, and the published radius.
 std::vector<RadiusRule> radii(bool quick) {
+  std::vector<double> factors;
+  const int steps = quick ? 11 : 22;
+  for (int i = 0; i <= steps; ++i) factors.push_back(static_cast<double>(i) * 11 / steps / 10);
+  if (!quick) {
+    factors.insert(factors.end(),
+                   {0.91, 0.92, 0.93, 0.94, 0.96, 0.97, 0.98, 0.985, 0.99, 0.995, 0.999});
+    std::ranges::sort(factors);
+  }
   std::vector<RadiusRule> out;
-  for (const double factor : factors(quick))
-    out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
+  // Rounded as they are written, so that a key that is read back gives the same number.
+  for (const double factor : factors) out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
   return out;
 }
 
-// Pairs at the published radius for each number of subpixel bits, with the side at which most are
-// missed; at 8 bits also without snapping, the budget radius, and 0.9 of it, which shows what is at
-// risk; other sides; twice the stratum, which must give the same rate; last pairs drawn anywhere,
-// where few bits miss enough of them.
+// Pairs at the published radius for each number of subpixel bits, with the side at which most pairs
+// are missed. For 8 bits also: without snapping; the budget radius; 0.9 of it, which shows how many
+// pairs are at risk; other sides; twice the stratum, which must give the same rate. The last rows
+// are pairs that are drawn anywhere, with few bits, since only then enough of them are missed.
 constexpr struct {
   const char* radius;
   double side;  // px
@@ -296,13 +234,16 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; few missed pairs are kept because of other pairs
+constexpr double kSmallest = 0x1p-5;  // px; with such small sides a missed pair is rarely kept
+                                      // because of another pair nearby
 
-// Four series: (1) with 8 subpixel bits, triangles of each size at the published radius (10^6
-// placements in all), and triangles up to 4 px at 0.5 to 0.95 times the budget radius; (2) the
-// smallest triangles at the published radius, with other numbers of subpixel bits and at other
-// resolutions; (3) the smallest triangles at the budget radius, which must miss none;
-// (4) pairs.
+// Four series:
+// (1) With 8 subpixel bits, triangles of each size at the published radius, 10^6 placements in
+//     all; and triangles up to 4 px at 0.5 to 0.95 times the budget radius.
+// (2) The smallest triangles at the published radius, with other numbers of subpixel bits and at
+//     other resolutions.
+// (3) The smallest triangles at the budget radius, which must miss none.
+// (4) Pairs.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;
@@ -393,7 +334,7 @@ std::vector<Point> radius_grid(const GridChoice& choice) {
         RunPoint point = far_point(small.scene, "obb", rule, small.resolution);
         point.depth_mode = mode;
         point.depth_format.reset();
-        point.views = small.views;
+        point.form.views = small.views;
         out.push_back(std::move(point));
       }
     }
@@ -410,6 +351,32 @@ PointResult measure_radius(const Point& point, MeasurementContext& lab) {
 }
 
 }  // namespace
+
+Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset) {
+  const Fattener fattener = offset == "exact" ? minkowski_fattener() : obb_fattener();
+  const Regions regions = find_regions(scene);
+  const std::vector<View> views = parse_views(views_of(record.options));
+  Fragments sum;
+  for (std::size_t v = 0; v < views.size() && v < record.found.views().size(); ++v) {
+    const auto window = fit_window(views[v], regions.places, resolution_of(record.options));
+    if (!window) continue;
+    FattenCounts counts;
+    const Drawables drawables = fatten(scene, regions.triangles, *window, fattener,
+                                       record.found.views()[v].radius_px, counts);
+    const std::size_t chunks = chunks_for(drawables.elements(), 256);
+    std::vector<Fragments> parts(chunks);
+    for_chunks(drawables.elements(), chunks,
+               [&](std::size_t chunk, std::size_t from, std::size_t to) {
+                 parts[chunk] = count_in(drawables, fattener.solid, *window, from, to);
+               });
+    for (const Fragments& part : parts) {
+      sum.covered += part.covered;
+      sum.solid += part.solid;
+      sum.elements += part.elements;
+    }
+  }
+  return sum;
+}
 
 PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab) {
   const bool fixed = point.depth_mode == DepthMode::fixed;
@@ -466,6 +433,16 @@ PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab) {
   return out;
 }
 
+Study offsets_study() {
+  return {.name = "offsets",
+          .title = "Boxes, exact offsets and intervals",
+          .question =
+              "What do the three ways to bound a fattened triangle in a pixel (the box around it, "
+              "the Minkowski sum itself, the interval of its depths) keep, and at what cost?",
+          .grid = offsets_grid,
+          .measure = measure_offsets};
+}
+
 Study precision_study() {
   return {.name = "precision",
           .title = "Bounds on depth, as depth buffers hold them",
@@ -474,7 +451,9 @@ Study precision_study() {
               "when the rasterizer interpolates depth and when a fragment program computes "
               "it, at any resolution and depth of the scene?",
           .grid = precision_grid,
-          .measure = measure_precision};
+          .measure = [](const Point& point, MeasurementContext& lab) {
+            return measure_lemma(std::get<LemmaPoint>(point), lab);
+          }};
 }
 
 Study radius_study() {

@@ -1,5 +1,5 @@
-// Decides which rows fit together in one store: those with one version of each library. Reads
-// shards, refuses those that do not fit, and writes one store.
+// Refuses rows that do not fit together in one store, such as rows with two versions of a library.
+// Reads shards and joins them to one store.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -7,14 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/system/output_file.h"
-#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -22,12 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr long kMostShards = 100'000;
+constexpr const char* kMeasureAgain = "measure it again as the others were";
 
 // The row's library with its version; empty if the row names none.
-std::string library_of(const Row& row) {
-  const auto at = row.measurement.counts->find("library");
-  return at != row.measurement.counts->end() && at->is_string() ? at->get<std::string>() : "";
-}
+std::string library_of(const Row& row) { return row.measurement.counts.value("library", ""); }
 
 struct Source {
   std::string path;
@@ -41,8 +36,6 @@ Source read(const std::string& path) {
   for (const std::string& name : store.studies()) out.studies.push_back(store.study(name));
   return out;
 }
-
-const char* const kMeasureAgain = "measure it again as the others were";
 
 // The commits of the programs that measured the rows of a study.
 std::set<std::string> commits_of(const Source& source, std::size_t study) {
@@ -121,10 +114,10 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// If several studies have rows of one point, all get the times of the first study, since different
-// shards may have timed them.
+// If several studies have rows of one point, different shards may have timed them. So all rows get
+// the times of the first one.
 void share_times(std::vector<Source>& sources) {
-  std::map<PointKey, JsonObject> times;
+  std::map<PointKey, nlohmann::ordered_json> times;
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     for (Source& source : sources) {
       for (Row& row : source.studies[i].rows) {
@@ -133,15 +126,6 @@ void share_times(std::vector<Source>& sources) {
         row.measurement.times = times.try_emplace(row.point, row.measurement.times).first->second;
       }
     }
-  }
-}
-
-// Refuses rows with two versions of a library.
-void require_one_version_each(const std::vector<Source>& sources) {
-  for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
-    std::vector<StudyOfFile> files;
-    for (const Source& source : sources) files.push_back({source.path, &source.studies[i]});
-    require_one_version(files);
   }
 }
 
@@ -223,7 +207,7 @@ std::vector<std::string> shard_files(const std::string& folder) {
 }
 
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out) {
-  // SQLite would take an old journal for that of the new file.
+  // SQLite would take an old journal for the journal of the new file.
   for (const char* beside : {"", "-journal", "-wal"}) {
     if (fs::exists(fs::symlink_status(out + beside)))
       throw Error(out + beside, "is there already", "move it away, or name another file with -o");
@@ -233,7 +217,11 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
     sources.push_back(read(file));
     require_alike(sources.front(), sources.back());
   }
-  require_one_version_each(sources);
+  for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
+    std::vector<StudyOfFile> of_study;
+    for (const Source& source : sources) of_study.push_back({source.path, &source.studies[i]});
+    require_one_version(of_study);
+  }
   require_whole(sources);
   share_times(sources);
 

@@ -1,21 +1,14 @@
 // The study "model" compares the misses that the model of docs/misses.md predicts with those of
-// runs. In a run the grid of pixels has one position below the scene; the model averages over all
+// runs. In a run the grid of pixels has one position behind the scene; the model averages over all
 // positions. So each point is run at several random positions of the grid.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <variant>
-#include <vector>
 
-#include "core/view/regions.h"
-#include "experiments/measure/harness.h"
 #include "experiments/method/miss_model.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
@@ -23,9 +16,9 @@ namespace {
 constexpr int kPositions = 4;
 constexpr int kMostFarResolution = 256;  // px; beyond, FAR takes minutes and misses little
 
-// Moves the pixel grids of all views below the scene, each by up to a pixel along both axes.
-// Windows are centred on the places where objects may meet. So this adds another place: two objects
-// of one tiny triangle whose boxes overlap, up to two pixels beyond the lower corner of the others.
+// Moves the pixel grid of each view, by up to a pixel along both axes. Windows are centred on the
+// places where objects may meet. So this adds such a place, up to two pixels beyond the lower
+// corner of the others: two objects of one tiny triangle, whose boxes overlap.
 Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution,
                       shapes::Random& random) {
   Box all = Box::empty();
@@ -99,10 +92,9 @@ std::vector<Point> model_grid(const GridChoice& choice) {
   for (const std::string& name : scenes_of(choice.quick)) {
     const NamedScene scene{name};
     for (const int resolution : resolutions) {
-      const RunPoint plain = cullide_point(scene, Method::cullide, resolution);
-      out.emplace_back(plain);
-      out.emplace_back(in_form(plain, kPublishedForm));
-      out.emplace_back(in_form(plain, {.rounds = 1, .clear = ClearRule::all}));
+      const CullideForm all_views{.rounds = 1, .clear = ClearRule::all};
+      for (const CullideForm& form : {CullideForm{}, kPublishedForm, all_views})
+        out.emplace_back(cullide_point(scene, Method::cullide, resolution, form));
       out.emplace_back(cullide_point(scene, Method::quick_cullide, resolution));
       if (resolution > kMostFarResolution) continue;
       for (const char* offset : {"obb", "exact"}) {

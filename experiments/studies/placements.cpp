@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "core/native/canvas.h"
-#include "experiments/method/plan.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "offsets/offsets.h"
@@ -62,82 +61,70 @@ void each_point(Patch& patch, const Use& use) {
   }
 }
 
-/// Cuts patches from an object. around: its triangles by vertex.
-class Quarry {
- public:
-  Quarry(const Scene& scene, const Object& object,
-         const std::vector<std::vector<std::uint32_t>>& around)
-      : scene_(scene), object_(object), around_(around) {}
+Vec3 mean(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
 
-  /// Returns `count` triangles: a random one and the nearest to it over shared vertices. If these
-  /// are too few (soups have no neighbours), others are drawn and put beside the first. The patch
-  /// is centred, scaled to a mean longest side of `side`, and turned at random.
-  std::vector<Corners> cut(Random& random, std::uint32_t count, double side) const {
-    std::vector<std::uint32_t> taken = {random.below(object_.triangle_count)};
-    for (std::size_t i = 0; i < taken.size() && taken.size() < count; ++i) {
-      for (const std::uint32_t v : triangle(taken[i])) {
-        for (const std::uint32_t t : around_[v]) {
-          if (taken.size() < count && std::find(taken.begin(), taken.end(), t) == taken.end())
-            taken.push_back(t);
-        }
+double longest(const Corners& c) {
+  return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+}
+
+// Centres a patch, and scales it so that the mean of the longest sides is `side`.
+void fit(std::vector<Corners>& patch, double side) {
+  Vec3 middle = Vec3::Zero();
+  double sum = 0;
+  for (const Corners& c : patch) {
+    middle += mean(c) / static_cast<double>(patch.size());
+    sum += longest(c) / static_cast<double>(patch.size());
+  }
+  const double scale = sum > 0 ? side / sum : 0;
+  each_point(patch, [&](Vec3& p) { p = (p - middle) * scale; });
+}
+
+// Rotates by a unit quaternion of four random numbers. It uses no sines, so the result is the same
+// on every machine.
+void turn(std::vector<Corners>& patch, Random& random) {
+  Eigen::Quaterniond q;
+  do {
+    q = Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
+                           random.between(-1, 1));
+  } while (!(q.squaredNorm() <= 1 && q.squaredNorm() > 0.01));
+  q.normalize();
+  const Eigen::Matrix3d by = q.toRotationMatrix();
+  each_point(patch, [&](Vec3& p) { p = by * p; });
+}
+
+// Cuts a patch of `count` triangles from an object: a random triangle and those nearest to it over
+// shared vertices. If these are too few (soups have no neighbours), other triangles are drawn and
+// moved beside the first. The patch is fitted to the side and turned at random. around: for each
+// vertex, the object's triangles that have it.
+std::vector<Corners> cut(const Scene& scene, const Object& object,
+                         const std::vector<std::vector<std::uint32_t>>& around, Random& random,
+                         std::uint32_t count, double side) {
+  const auto corners_of = [&](std::uint32_t t) { return scene.corners(object.first_triangle + t); };
+  std::vector<std::uint32_t> taken = {random.below(object.triangle_count)};
+  for (std::size_t i = 0; i < taken.size() && taken.size() < count; ++i) {
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + taken[i]]) {
+      for (const std::uint32_t t : around[v]) {
+        if (taken.size() < count && std::ranges::count(taken, t) == 0) taken.push_back(t);
       }
     }
-    std::vector<Corners> out;
-    for (const std::uint32_t t : taken) out.push_back(corners_of(t));
-    const Vec3 middle = mean(out[0]);
-    const double reach = longest(out[0]);
-    while (out.size() < count) {
-      Corners more = corners_of(random.below(object_.triangle_count));
-      // The triangle is scaled to the size of the first one, and moved near it.
-      const double size = longest(more);
-      if (!(size > 0)) continue;
-      const Vec3 from = mean(more), to = middle + reach * random.in_ball();
-      for (Vec3& c : more) c = to + (c - from) * (reach / size);
-      out.push_back(more);
-    }
-    fit(out, side);
-    turn(out, random);
-    return out;
   }
-
-  static Vec3 mean(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
-  static double longest(const Corners& c) {
-    return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+  std::vector<Corners> out;
+  for (const std::uint32_t t : taken) out.push_back(corners_of(t));
+  const Vec3 middle = mean(out[0]);
+  const double reach = longest(out[0]);
+  while (out.size() < count) {
+    Corners more = corners_of(random.below(object.triangle_count));
+    const double size = longest(more);
+    if (!(size > 0)) continue;
+    // Scales the triangle to the size of the first one, and moves it near that.
+    const Vec3 from = mean(more), to = middle + reach * random.in_ball();
+    for (Vec3& c : more) c = to + (c - from) * (reach / size);
+    out.push_back(more);
   }
-
- private:
-  std::array<std::uint32_t, 3> triangle(std::uint32_t t) const {
-    return scene_.triangles[object_.first_triangle + t];
-  }
-  Corners corners_of(std::uint32_t t) const { return scene_.corners(object_.first_triangle + t); }
-
-  static void fit(std::vector<Corners>& patch, double side) {
-    Vec3 middle = Vec3::Zero();
-    double sum = 0;
-    for (const Corners& c : patch) {
-      middle += mean(c) / static_cast<double>(patch.size());
-      sum += longest(c) / static_cast<double>(patch.size());
-    }
-    const double scale = sum > 0 ? side / sum : 0;
-    each_point(patch, [&](Vec3& p) { p = (p - middle) * scale; });
-  }
-
-  // Rotates by a unit quaternion of four draws: without sines, the result is the same everywhere.
-  static void turn(std::vector<Corners>& patch, Random& random) {
-    Eigen::Quaterniond q;
-    do {
-      q = Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
-                             random.between(-1, 1));
-    } while (!(q.squaredNorm() <= 1 && q.squaredNorm() > 0.01));
-    q.normalize();
-    const Eigen::Matrix3d by = q.toRotationMatrix();
-    each_point(patch, [&](Vec3& p) { p = by * p; });
-  }
-
-  const Scene& scene_;
-  const Object& object_;
-  const std::vector<std::vector<std::uint32_t>>& around_;
-};
+  fit(out, side);
+  turn(out, random);
+  return out;
+}
 
 Vec3 inner(const Corners& c, Random& random) {
   double a = random.unit(), b = random.unit();
@@ -160,9 +147,9 @@ Vec3 cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   return to;
 }
 
-// Turns a triangle about an axis until the longest edge of its image, along which its rectangle is
-// drawn (offsets/fit.inl), has a random direction whose angle to a diagonal of the pixels has at
-// least this cosine. No sines, as in Quarry::turn().
+// Turns a triangle about an axis. The longest edge of its image, along which its rectangle is drawn
+// (offsets/fit.inl), gets a random direction; the angle between it and a diagonal of the pixels has
+// at least this cosine. Uses no sines, as turn().
 void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random) {
   const int right = (axis + 1) % 3, up = (axis + 2) % 3;
   double x = 0, y = 0, length = 0;
@@ -188,9 +175,9 @@ void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random)
   }
 }
 
-// Reflects and moves the second patch so that its corner farthest from its middle pokes through a
-// triangle of the first. The depth is a random fraction, 2^-20 to 1, of the smaller of that
-// triangle's longest side and 1 px.
+// Reflects and moves the second patch. Its corner farthest from its middle then pokes through a
+// triangle of the first patch, by a random fraction, 2^-20 to 1, of 1 px or of that triangle's
+// longest side if it is shorter.
 void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -210,12 +197,9 @@ void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
     return square > 0 ? Vec3(p - 2 * across.dot(p) / square * across) : p;
   };
   each_point(other, [&](Vec3& p) { p = reflected(p); });
-  const double depth = std::min(1.0, Quarry::longest(face)) * random.over_octaves(20);
+  const double depth = std::min(1.0, longest(face)) * random.over_octaves(20);
   shift(other, inner(face, random) - reflected(tip) - depth * normal);
 }
-
-// The side of a cell in pixels: room for two touching patches, a ball and a margin of pixels.
-double cell_of(double side) { return std::ceil(10 * side + 6); }
 
 double reach_of(const std::vector<Corners>& patch) {
   double out = 0;
@@ -236,23 +220,25 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
   }
 }
 
-// Snapping to multiples of g moves an edge with the unit normal n inward by at most g/2 (|n.x| +
-// |n.y|), which is g/sqrt(2) cos(t) where n is at the angle t from a diagonal. Let the contact be q
-// away from a corner of the pixels. The rectangle of a triangle reaches at least r = sqrt(1/2)
-// beyond the contact, so it loses the pixel centre on this diagonal only if
-//   n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
-// A pair is missed if each of the four centres around the corner is lost by one of both. If each
-// triangle loses two opposite centres, the bound holds for n and -n. So cos(t) > 1 / (1 + g), and q
-// is inside both strips. All such pairs of strips are inside |q.x| + |q.y| < px, which two at
-// opposite angles reach where px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 is largest for px. If they
-// share the centres in another way, the bounds of both have a positive sum, so that an angle is at
-// most sqrt(2) times as large and, from 8 bits on, px at most 1.4 times. Such misses are in the
-// stratum that is twice as wide, and the rates of both show how many there are. One triangle alone
-// does not lose all four, to first order in g: of the corners of its rectangle two are 2 px or more
-// apart in x and the other two in y, also when they are rounded to multiples of g, and the sum of
-// the four conditions says that one of both distances is below 2 px.
+// 1. Let n be the unit normal of an edge, at the angle t from a diagonal. Snapping to multiples
+//    of g moves the edge inward by at most g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
+// 2. Let the contact be at q, seen from the nearest corner of the pixels. A triangle's rectangle
+//    reaches at least sqrt(1/2) beyond the contact. So it loses the pixel centre on this diagonal
+//    only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
+// 3. A pair is missed only if each of the four centres around the corner is lost by one of the two
+//    triangles. Suppose that each triangle loses two opposite centres. Then step 2 holds for n and
+//    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. All such pairs of
+//    strips lie in |q.x| + |q.y| < px, where px is the largest value with
+//    px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 for some t.
+// 4. If the triangles share the centres in another way, the sum of their two bounds is positive.
+//    Then an angle is at most sqrt(2) times as large and, from 8 bits on, px at most 1.4 times.
+//    Such misses are in the stratum that is twice as wide; the rates of both strata show how many
+//    there are.
+// 5. One triangle alone does not lose all four centres, to first order in g. Two corners of its
+//    rectangle are at least 2 px apart in x, and the other two in y, also after snapping. If it
+//    lost all four centres, the sum of the four conditions would make one of these distances less.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
-  // Floats next to the edge of the window are multiples of 2^-25 of its side.
+  // Without snapping, floats round: at the edge of the window to multiples of 2^-25 of its side.
   const double grid =
       subpixel_bits > 0 ? std::ldexp(1.0, -subpixel_bits) : std::ldexp(resolution, -25);
   const double reach = 0.5 * (1 + grid);
@@ -265,9 +251,9 @@ CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
 PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratum& stratum,
                                  std::uint64_t most, std::uint64_t seed) const {
   Random random(seed);
-  const Quarry first(from_, from_.objects[0], around_[0]),
-      second(from_, from_.objects[1], around_[1]);
-  const double cell = cell_of(point.side), room = 0.5 * cell - 2, half = 0.5 * point.resolution;
+  // A cell has room for two touching patches, a ball and a margin of pixels.
+  const double cell = std::ceil(10 * point.side + 6), room = 0.5 * cell - 2,
+               half = 0.5 * point.resolution;
   const auto n = static_cast<std::uint64_t>(std::floor(point.resolution / cell));
   const std::uint32_t count = point.pairs ? 1 : kPatchTriangles;
   if (n < 1) throw std::logic_error("place_patches: the window is smaller than a placement");
@@ -277,9 +263,9 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
-    do {  // Patches that leave their cell would meet their neighbours, so they are drawn again.
-      a = first.cut(random, count, point.side);
-      b = second.cut(random, count, point.side);
+    do {  // again if a patch leaves its cell, since it would meet patches of other cells
+      a = cut(from_, from_.objects[0], around_[0], random, count, point.side);
+      b = cut(from_, from_.objects[1], around_[1], random, count, point.side);
       if (point.grazing) {
         graze(a, b, random);
         continue;
@@ -306,7 +292,8 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     ++out.placements;
   }
   if (point.pairs) {
-    // Points that touch make the window -half to half, so that whole numbers are corners of pixels.
+    // Two points that touch at each end make the window reach from -half to half, so that whole
+    // numbers are corners of pixels.
     for (const double end : {-half, half}) {
       for (auto* list : {&one, &other})
         list->push_back({Vec3::Constant(end), Vec3::Constant(end), Vec3::Constant(end)});
@@ -361,23 +348,21 @@ std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) 
 
 PointResult measure_placements(const PlacementPoint& point, MeasurementContext& lab) {
   const PatchSource source(make_builtin_scene(point.from));
-  RunOptions options;
-  options.method = Method::far;
-  options.radius = point.radius;
-  options.depth = DepthMode::fragment;
-  options.resolution = point.resolution;
-  options.verify = false;
-  PlacementCounts counts;
-  counts.promises = guaranteed(options);
+  const RunOptions options{.method = Method::far,
+                           .resolution = point.resolution,
+                           .radius = point.radius,
+                           .depth = DepthMode::fragment,
+                           .verify = false};
+  PlacementCounts counts{.promises = guaranteed(options)};
   PointResult out{.device = "native"};
   int bits = point.subpixel_bits;
-  Canvas* asked = nullptr;  // the device's; else one for each window
+  Canvas* device_canvas = nullptr;  // null: each window gets a SnappingCanvas
   if (point.pairs && bits == 0) {
     const bool native = lab.session().canvas_device().native;
-    asked = &lab.session().canvas(
+    device_canvas = &lab.session().canvas(
         obb_fattener(), {.depth_format = DepthFormat::float32, .query = QueryMode::flags});
     if (!native) {
-      bits = asked->limits().subpixel_bits;
+      bits = device_canvas->limits().subpixel_bits;
       out.device = lab.session().context().info().renderer;
     }
   }
@@ -400,7 +385,8 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     if (!work.fatteners.empty()) {
       settings.fattener = work.fatteners.front();
       SnappingCanvas canvas(settings.fattener, point.subpixel_bits, lab.session().threads());
-      const CullResult result = cull(scene, work.regions, settings, asked ? *asked : canvas);
+      const CullResult result =
+          cull(scene, work.regions, settings, device_canvas ? *device_canvas : canvas);
       for (const std::uint32_t t : result.live) kept[t] = 1;
       for (const ViewReport& view : result.views) {
         if (view.drawn) pixel = std::min(pixel, view.pixel_size);
@@ -412,7 +398,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     std::vector<std::uint8_t> collides(placed.placements), misses(placed.placements);
     for (const TrianglePair& pair : lab.truth().pairs) {
       const std::uint64_t at = pair.a / (point.pairs ? 1 : kPatchTriangles);
-      if (at >= placed.placements) continue;  // points that make the window
+      if (at >= placed.placements) continue;  // the points at the ends of the window
       collides[at] = 1;
       ++counts.colliding;
       if (kept[pair.a] && kept[pair.b]) continue;
@@ -422,10 +408,8 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
           std::max(counts.largest_miss_px,
                    intersection_length(scene.corners(pair.a), scene.corners(pair.b)) / pixel);
     }
-    counts.colliding_placements +=
-        static_cast<std::uint64_t>(std::count(collides.begin(), collides.end(), 1));
-    counts.missed_placements +=
-        static_cast<std::uint64_t>(std::count(misses.begin(), misses.end(), 1));
+    counts.colliding_placements += std::ranges::count(collides, 1);
+    counts.missed_placements += std::ranges::count(misses, 1);
   }
   out.counts = counts;
   return out;

@@ -15,7 +15,7 @@
 namespace farcull {
 namespace {
 
-// The words of a column; the first one stands for value 0.
+// The words of a column, in the order of the values of its enumeration.
 constexpr std::array kDepthFormats = {"float32", "fixed24"};
 constexpr std::array kDepthModes = {"fragment", "fixed"};
 
@@ -29,35 +29,34 @@ std::optional<T> choice_of(const std::string& text, const Words& words) {
   return static_cast<T>(at - words.begin());
 }
 
-void add_scene(const NamedScene& scene, PointKey& key) { key.scene = scene.name; }
-void add_scene(const MotionFrame& scene, PointKey& key) {
-  key.scene = scene.name;
-  key.frame = scene.frame;
-}
-void add_scene(const ClothApart& scene, PointKey& key) {
-  key.scene = scene.name + "@apart";
-  key.frame = scene.frame;
-}
-void add_scene(const PixelCorners&, PointKey& key) { key.scene = "pixel-corners"; }
-void add_scene(const ClusteredScene& scene, PointKey& key) {
-  key.scene = fmt::format("clusters:{}@seed{}", scene.ratio, scene.seed);
-}
-void add_scene(const ContactCells& scene, PointKey& key) {
-  key.scene = fmt::format("contacts:{}:{}:{}", scene.family, scene.side, scene.value);
-}
-
-void add_scene(const PointScene& scene, PointKey& key) {
-  std::visit([&](const auto& of) { add_scene(of, key); }, scene);
+// The columns `scene` and `frame` of a scene.
+PointKey key_of(const PointScene& scene) {
+  struct Columns {
+    PointKey operator()(const NamedScene& of) const { return {.scene = of.name}; }
+    PointKey operator()(const MotionFrame& of) const {
+      return {.scene = of.name, .frame = of.frame};
+    }
+    PointKey operator()(const ClothApart& of) const {
+      return {.scene = of.name + "@apart", .frame = of.frame};
+    }
+    PointKey operator()(const PixelCorners&) const { return {.scene = "pixel-corners"}; }
+    PointKey operator()(const ClusteredScene& of) const {
+      return {.scene = fmt::format("clusters:{}@seed{}", of.ratio, of.seed)};
+    }
+    PointKey operator()(const ContactCells& of) const {
+      return {.scene = fmt::format("contacts:{}:{}:{}", of.family, of.side, of.value)};
+    }
+  };
+  return std::visit(Columns{}, scene);
 }
 
 PointKey key_of(const RunPoint& point) {
-  PointKey key;
-  add_scene(point.scene, key);
+  PointKey key = key_of(point.scene);
   const std::string form = form_text({.method = point.method,
-                                      .rounds = point.rounds,
-                                      .clear = point.clear,
-                                      .objects_alone = point.objects_alone,
-                                      .conservative = point.conservative});
+                                      .rounds = point.form.rounds,
+                                      .clear = point.form.clear,
+                                      .objects_alone = point.form.objects_alone,
+                                      .conservative = point.form.conservative});
   key.method = to_string(point.method) + (form.empty() ? "" : " " + form);
   if (point.mean_pixels > 0) key.method += fmt::format(" @{}px", point.mean_pixels);
   key.offset = point.offset;
@@ -65,20 +64,18 @@ PointKey key_of(const RunPoint& point) {
   key.depth_format = point.depth_format;
   key.depth_mode = point.depth_mode;
   key.resolution = point.resolution;
-  key.views = point.views;
+  key.views = point.form.views;
   return key;
 }
 
 PointKey key_of(const PeerPoint& point) {
-  PointKey key;
-  add_scene(point.scene, key);
+  PointKey key = key_of(point.scene);
   key.method = point.peer;
   return key;
 }
 
 PointKey key_of(const NeighbourPoint& point) {
-  PointKey key;
-  add_scene(point.scene, key);
+  PointKey key = key_of(point.scene);
   key.method = to_string(point.method);
   if (point.widening < 1) key.method += fmt::format(" --widening {}", point.widening);
   key.resolution = point.resolution;
@@ -86,50 +83,44 @@ PointKey key_of(const NeighbourPoint& point) {
 }
 
 PointKey key_of(const DistancePoint& point) {
-  PointKey key;
-  add_scene(point.scene, key);
+  PointKey key = key_of(point.scene);
   key.method = point.contestant + (point.task == DistanceTask::objects ? " objects" : " nearest");
   return key;
 }
 
 PointKey key_of(const LemmaPoint& point) {
-  PointKey key;
-  key.scene = LemmaScene{point.generator, point.points, point.depth}.name();
-  key.method = point.worst ? "lemma-worst" : point.coarse ? "lemma-fixed16" : "lemma";
-  key.offset = "obb";
-  key.radius = point.radius;
-  key.depth_format = point.depth_format;
-  key.depth_mode = point.depth_mode;
-  key.resolution = point.side;
-  key.seed = point.seed;
-  return key;
+  return {.scene = LemmaScene{point.generator, point.points, point.depth}.name(),
+          .method = point.worst    ? "lemma-worst"
+                    : point.coarse ? "lemma-fixed16"
+                                   : "lemma",
+          .offset = "obb",
+          .radius = point.radius,
+          .depth_format = point.depth_format,
+          .depth_mode = point.depth_mode,
+          .resolution = point.side,
+          .seed = point.seed};
 }
 
 PointKey key_of(const PlacementPoint& point) {
-  PointKey key;
   const std::string kind = point.pairs     ? fmt::format("pair{}", point.widening)
                            : point.grazing ? "grazing"
                                            : "crossing";
-  key.scene = fmt::format("{}@{}:{}:{}", point.from, kind, point.side, point.placements);
-  key.method = point.subpixel_bits > 0 ? fmt::format("far-snapped-{}", point.subpixel_bits) : "far";
-  key.offset = "obb";
-  key.radius = point.radius;
-  key.depth_mode = DepthMode::fragment;
-  key.depth_format = DepthFormat::float32;
-  key.resolution = point.resolution;
-  key.seed = point.seed;
-  return key;
+  const int bits = point.subpixel_bits;
+  return {.scene = fmt::format("{}@{}:{}:{}", point.from, kind, point.side, point.placements),
+          .method = bits > 0 ? fmt::format("far-snapped-{}", bits) : "far",
+          .offset = "obb",
+          .radius = point.radius,
+          .depth_format = DepthFormat::float32,
+          .depth_mode = DepthMode::fragment,
+          .resolution = point.resolution,
+          .seed = point.seed};
 }
 
 PointKey key_of(const LibraryPoint& point) {
-  PointKey key;
   const std::string suite = !point.suite.empty() ? "suite-" + point.suite_name
                             : point.small        ? "small"
                                                  : "full";
-  key.scene = suite + "/" + point.question;
-  key.method = point.contestant;
-  key.seed = point.seed;
-  return key;
+  return {.scene = suite + "/" + point.question, .method = point.contestant, .seed = point.seed};
 }
 
 }  // namespace
@@ -158,15 +149,11 @@ std::optional<DepthMode> column_of(const std::string& text) {
 }
 
 int runs_of(const Point& point) {
-  return std::visit(
-      [](const auto& of) {
-        if constexpr (requires { of.repeat; }) {
-          return of.repeat;
-        } else {
-          return 1;
-        }
-      },
-      point);
+  const auto runs = [](const auto& of) {
+    if constexpr (requires { of.repeat; }) return of.repeat;
+    return 1;
+  };
+  return std::visit(runs, point);
 }
 
 PointKey key_of(const Point& point) {

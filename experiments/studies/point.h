@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -52,24 +51,28 @@ struct ContactCells {
 using PointScene =
     std::variant<NamedScene, MotionFrame, ClothApart, PixelCorners, ClusteredScene, ContactCells>;
 
-/// A method of `farcull run`. If a field is empty, the method chooses its value.
-struct RunPoint {
-  PointScene scene;
-  Method method = Method::far;
-  std::string offset = {};                       // obb or exact; of far
-  std::optional<RadiusRule> radius = {};         // of far
-  std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
-  std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
-  int resolution = 0;                            // px; 0: none, or see mean_pixels
-  /// If not 0, the resolution is the least one at which triangles that can take part cover this
-  /// many pixels on average (size_for() in run_point.h).
-  double mean_pixels = 0;
-  std::string views = {};
-  /// Options that choose the form of a method that draws, as in RunOptions.
+/// Options that choose the form of a method that draws, as in RunOptions.
+struct CullideForm {
   int rounds = 0;
   ClearRule clear = ClearRule::any;
   bool objects_alone = false;
   bool conservative = false;
+  std::string views = {};
+};
+
+/// A method of `farcull run`. If a field is empty, the method chooses its value.
+struct RunPoint {
+  PointScene scene;
+  Method method = Method::far;
+  std::string offset = {};                       // obb or exact; only for far
+  std::optional<RadiusRule> radius = {};         // only for far
+  std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
+  std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
+  int resolution = 0;                            // px; 0: none, or see mean_pixels
+  /// If not 0, the resolution is the least one at which triangles that can take part cover this
+  /// many pixels on average (size_for() in run_point.cpp).
+  double mean_pixels = 0;
+  CullideForm form = {};
   int repeat = 1;  // see runs_of(); 1 for a MotionFrame
 };
 
@@ -92,7 +95,7 @@ struct LemmaPoint {
   /// The samples are what a buffer of this format stores. Empty: what the shader computes (with
   /// fixed depth, what the device's buffer stores).
   std::optional<DepthFormat> depth_format = {};
-  bool coarse = false;  // the samples are what a buffer of 16 bits of fixed point stores
+  bool coarse = false;  // the samples are what a buffer of 16-bit fixed point stores
   int side = 0;         // px, of the window; 0: the generator's own
   std::uint64_t seed = 1;
 };
@@ -102,7 +105,8 @@ struct PlacementPoint {
   std::string from;      // built-in scene; patches are cut from its first two objects
   bool grazing = false;  // a corner of one patch pokes through the other; else they cross
   bool pairs = false;    // patches of one triangle, which cross
-  int widening = 0;  // of pairs: from a CornerStratum so many times as wide, 1, 2 or 4; 0: anywhere
+  int widening = 0;  // of pairs: 0: drawn anywhere; 1, 2 or 4: drawn from a CornerStratum that is
+                     // so many times as wide as the usual one
   double side = 1;   // px, mean longest side of a triangle
   std::uint64_t placements = 0;
   /// Corners of proxies are snapped to 2^-bits px; 0: not, and pairs are drawn on the device.
@@ -112,7 +116,7 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/contestants.h) and one kind of question of a suite.
+/// A contestant (studies/libraries.cpp) and one kind of question of a suite.
 struct LibraryPoint {
   std::string contestant = {};
   std::string question = "pair";  // as in docs/ask.md
@@ -152,18 +156,17 @@ inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
 /// The columns that identify a point in a store. A column that does not apply is empty, 0 or -1; no
 /// two points of a grid have the same key.
 struct PointKey {
-  std::string scene = {};   // as on the command line, or as key_of() writes it
-  std::string method = {};  // as --method with the options of its form ("cullide --rounds
-                            // 1"), perhaps with the mean size of triangles ("@4px"); or a peer;
-                            // "lemma", "lemma-worst", "lemma-fixed16"; of placements "far",
-                            // "far-snapped-8"; a contestant, perhaps with what it is asked
-                            // ("cgal-aabb nearest"); of potential neighbours "boxes", "trees",
-                            // "voronoi", "voronoi-reliable"
+  std::string scene = {};  // as on the command line, or as key_of() writes it
+  /// As --method with the options of its form ("cullide --rounds 1"), perhaps with the mean size of
+  /// triangles ("@4px"); or a peer; "lemma", "lemma-worst", "lemma-fixed16"; of placements "far",
+  /// "far-snapped-8"; a contestant, perhaps with its question ("cgal-aabb nearest"); of potential
+  /// neighbours "boxes", "trees", "voronoi", "voronoi-reliable".
+  std::string method = {};
   std::string offset = {};  // obb or exact
   std::optional<RadiusRule> radius = {};
   std::optional<DepthFormat> depth_format = {};
   std::optional<DepthMode> depth_mode = {};
-  int resolution = 0;  // px; of "voronoi" and "voronoi-reliable" cells
+  int resolution = 0;  // px; for "voronoi" and "voronoi-reliable" in cells
   std::string views = {};
   long frame = -1;
   std::uint64_t seed = 0;
@@ -182,8 +185,7 @@ std::string column_text(const std::optional<DepthMode>& mode);
 template <class T>
 std::optional<T> column_of(const std::string& text);
 
-/// In how many rounds a point is timed. All timed points of a run are visited in each round, so
-/// that minutes lie between the rounds of a point (run_studies.h).
+/// In how many rounds a point is timed (run_studies.h).
 inline constexpr int kRounds = 3;
 /// The runs of the point in all rounds. At most 1: it is run once, for its counts, and not timed.
 int runs_of(const Point& point);
@@ -222,42 +224,20 @@ inline RunPoint far_point(PointScene scene, const std::string& offset, const Rad
 }
 
 /// A method of the CULLIDE family at a resolution, with the depth of the rasterizer in 32 bits.
-inline RunPoint cullide_point(PointScene scene, Method method, int resolution) {
+inline RunPoint cullide_point(PointScene scene, Method method, int resolution,
+                              const CullideForm& form = {}) {
   return {.scene = std::move(scene),
           .method = method,
           .depth_mode = DepthMode::fixed,
           .depth_format = DepthFormat::float32,
-          .resolution = resolution};
+          .resolution = resolution,
+          .form = form};
 }
 
-/// Options of a form of CULLIDE, as in RunPoint; in_form() sets them.
-struct CullideForm {
-  int rounds = 0;
-  ClearRule clear = ClearRule::any;
-  bool objects_alone = false;
-  bool conservative = false;
-  std::string views = {};
-};
-inline RunPoint in_form(RunPoint point, const CullideForm& form) {
-  point.rounds = form.rounds;
-  point.clear = form.clear;
-  point.objects_alone = form.objects_alone;
-  point.conservative = form.conservative;
-  point.views = form.views;
-  return point;
-}
 /// CULLIDE as published: one round.
 inline const CullideForm kPublishedForm = {.rounds = 1};
 /// The form that misses least.
 inline const CullideForm kStrictForm = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
-inline constexpr const char* kBothDirections = "x,-x,y,-y,z,-z";
-
-/// The point at the least resolution at which triangles cover this many pixels on average.
-inline RunPoint at_mean_pixels(RunPoint point, double pixels) {
-  point.resolution = 0;
-  point.mean_pixels = pixels;
-  return point;
-}
 
 /// A randomly drawn scene with the first `count` of the five seeds that are measured: the scene's
 /// default seed, and 101 to 104.

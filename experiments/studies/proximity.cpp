@@ -9,18 +9,11 @@
 #include <algorithm>
 #include <map>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/view/view.h"
-#include "experiments/measure/harness.h"
 #include "experiments/method/distances.h"
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
@@ -31,27 +24,19 @@ constexpr unsigned kThreads = 1;
 struct Exact {
   Scene scene;
   std::string hash;
-  std::vector<PeerDistance> distances;  // of the task that was asked for
-  std::uint64_t accounted = 0;          // pairs of triangles
-  std::vector<NearestObjects> nearest;  // of the task `nearest`
+  std::vector<PeerDistance> distances;  // the answers to the task
+  std::uint64_t accounted = 0;          // pairs of triangles that the accounting decided
+  std::vector<NearestObjects> nearest;  // only for the task `nearest`
 };
 
-void require_proved(const std::string& where, const DistanceRecord& record) {
-  const DistanceAccounting& all = *record.verification;
-  if (all.holds()) return;
-  throw Error(where,
-              fmt::format("the exact answers are wrong: {} pairs are nearer, {} distances are off",
-                          all.nearer, all.wrong),
-              "this is a fault of farcull: please report it with the scene");
-}
+constexpr const char* kReport = "this is a fault of farcull: please report it with the scene";
 
 // Checks that both searches agree. If several objects are equally near, `distances` names one.
 void require_alike(const std::string& where, const Exact& exact) {
   for (const PeerDistance& one : exact.distances) {
-    const std::vector<std::uint32_t>& all = exact.nearest[one.a].objects;
-    if (std::find(all.begin(), all.end(), one.b) != all.end()) continue;
+    if (std::ranges::count(exact.nearest[one.a].objects, one.b) > 0) continue;
     throw Error(where, fmt::format("two searches name different nearest objects of {}", one.a),
-                "this is a fault of farcull: please report it with the scene");
+                kReport);
   }
 }
 
@@ -70,7 +55,13 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
                  .inside = false,
                  .verify = true},
                 lab.progress());
-  require_proved(where, record);
+  if (const DistanceAccounting& all = *record.verification; !all.holds()) {
+    throw Error(
+        where,
+        fmt::format("the exact answers are wrong: {} pairs are nearer, {} distances are off",
+                    all.nearer, all.wrong),
+        kReport);
+  }
   now.distances = as_peer(record);
   now.accounted = record.verification->pairs_total;
   if (nearest) {
@@ -82,9 +73,6 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
 
 using enum NeighbourMethod;
 
-std::vector<int> resolutions(bool quick) {
-  return quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024};
-}
 constexpr int kCellsInMotion = 256;    // cells, for scenes that move
 constexpr int kCountResolution = 128;  // cells, for times against the number of objects
 constexpr int kMostInDiagrams = 400;   // objects in a scene; for diagrams
@@ -95,14 +83,11 @@ constexpr int kSeeds = 3;              // of clusters
 // reliable diagram with widening 0, which may lose objects.
 void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
-    out.emplace_back(NeighbourPoint{.scene = scene, .method = method});
-  for (const int cells : resolutions(quick)) {
-    out.emplace_back(NeighbourPoint{.scene = scene, .method = voronoi, .resolution = cells});
-    out.emplace_back(
-        NeighbourPoint{.scene = scene, .method = voronoi_reliable, .resolution = cells});
-    if (unwidened)
-      out.emplace_back(NeighbourPoint{
-          .scene = scene, .method = voronoi_reliable, .resolution = cells, .widening = 0});
+    out.emplace_back(NeighbourPoint{scene, method});
+  for (const int cells : quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024}) {
+    out.emplace_back(NeighbourPoint{scene, voronoi, cells});
+    out.emplace_back(NeighbourPoint{scene, voronoi_reliable, cells});
+    if (unwidened) out.emplace_back(NeighbourPoint{scene, voronoi_reliable, cells, 0});
   }
 }
 
@@ -128,7 +113,7 @@ void add_scenes_at_rest(bool quick, std::vector<Point>& out) {
     add_sets(NamedScene{c.scene}, quick, false, out);
     add_distances(NamedScene{c.scene}, c.task, out);
   }
-  // Far from the origin doubles have fewer digits left for the distances between objects.
+  // Far from the origin, doubles have fewer digits left for the distances between objects.
   for (const char* scene : {"crowd:60@far", "cylinders:12@far"})
     add_distances(NamedScene{scene}, nearest, out);
 }
@@ -151,11 +136,8 @@ void add_motion(bool quick, std::vector<Point>& out) {
   for (const std::string& name : quick ? few : full) {
     for (long frame = 0; frame < frames; ++frame) {
       const MotionFrame scene{name, frame, frames};
-      for (const NeighbourMethod method : {boxes, trees, voronoi, voronoi_reliable}) {
-        out.emplace_back(NeighbourPoint{.scene = scene,
-                                        .method = method,
-                                        .resolution = has_cells(method) ? kCellsInMotion : 0});
-      }
+      for (const NeighbourMethod method : {boxes, trees, voronoi, voronoi_reliable})
+        out.emplace_back(NeighbourPoint{scene, method, has_cells(method) ? kCellsInMotion : 0});
     }
   }
 }
@@ -205,7 +187,7 @@ PointResult measure_distances(const DistancePoint& point, const DistancePeer& co
   PointResult none{.device = "none", .left_out = contestant.missing};
   if (!none.left_out.empty()) return none;
   const Exact& exact = exact_of(point.scene, point.task, describe(Point(point)), lab);
-  if (contestant.refuses) none.left_out = contestant.refuses(exact.scene);
+  none.left_out = why_left_out(contestant, exact.scene);
   if (!none.left_out.empty()) return none;
   const PeerQuestion question{.task = point.task};
   if (lab.progress()) lab.progress()(contestant.name);
@@ -250,15 +232,7 @@ std::string library_of_distances(const Point& point) {
 }
 
 Study proximity_study() {
-  Study study;
-  study.name = "proximity";
-  study.title = "Potential neighbours and distances";
-  study.question =
-      "How many objects and triangles may hold the nearest neighbour of an object, how many "
-      "nearest "
-      "neighbours does a grid lose at which resolution, and how far are the distances of libraries "
-      "off, in which time?";
-  study.grid = [](const GridChoice& choice) {
+  const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
     add_scenes_at_rest(choice.quick, out);
     add_clusters(choice, out);
@@ -266,13 +240,20 @@ Study proximity_study() {
     add_counts(choice.quick, out);
     return out;
   };
-  study.measure = [](const Point& point, MeasurementContext& lab) {
+  const auto measure = [](const Point& point, MeasurementContext& lab) {
     if (const auto* of = std::get_if<NeighbourPoint>(&point)) return measure_neighbours(*of, lab);
     return measure_distances(std::get<DistancePoint>(point), lab);
   };
-  study.library = library_of_distances;
-  study.campaign = true;
-  return study;
+  return {.name = "proximity",
+          .title = "Potential neighbours and distances",
+          .question =
+              "How many objects and triangles may hold the nearest neighbour of an object, how "
+              "many nearest neighbours does a grid lose at which resolution, and how far are the "
+              "distances of libraries off, in which time?",
+          .grid = grid,
+          .measure = measure,
+          .library = library_of_distances,
+          .campaign = true};
 }
 
 }  // namespace farcull

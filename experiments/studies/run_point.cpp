@@ -1,5 +1,5 @@
-// Opens the scenes of points, runs methods and libraries on them, and compares each run with the
-// truth.
+// Makes and opens the scenes of points, runs methods and libraries on them, and compares each run
+// with the truth.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -29,6 +29,10 @@
 namespace farcull {
 namespace {
 
+// ---- the scenes ----
+
+using shapes::Corners;
+
 // Two objects of segments. Each segment crosses a segment of the other object at 45 degrees, within
 // 2^-10 px of a corner of a pixel in the view z at this resolution. The objects' boxes are as many
 // units wide as the window has pixels, so that a unit is a pixel and corners of pixels are whole
@@ -37,7 +41,6 @@ constexpr const char* kCorners = "pixel-corners";
 constexpr int kCornersResolution = 96;
 
 Scene pixel_corners() {
-  using shapes::Corners;
   constexpr int kHalf = kCornersResolution / 2;
   constexpr double kReach = 0x1p-12;
   shapes::Random random(16);
@@ -68,7 +71,6 @@ Scene pixel_corners() {
 // each in a cube of side 1 / ratio at a random place. Two objects of one triangle lie in opposite
 // corners of the large cube, so that a grid covers all of it.
 Scene clusters(const ClusteredScene& wanted) {
-  using shapes::Corners;
   constexpr int kClusters = 10, kObjects = 20;
   shapes::Random random(wanted.seed);
   const double side = 1.0 / wanted.ratio;
@@ -99,6 +101,71 @@ Scene clusters(const ClusteredScene& wanted) {
   return scene.finish();
 }
 
+// The scene of ContactCells: a family of contacts, in which one number goes from a harmless value
+// to an extreme. Cell (i, j) lies at (i, j, i + j modulo side), so that in each of the views x, y
+// and z every cell has pixels of its own. A unit is a pixel, and corners of pixels are at whole
+// numbers in all three views. Of six cells
+// - one has a contact at risk, which does not depend on the number: in one of the views (the axes
+//   in turn) the images of its triangles are segments at 45 degrees that cross at the corner of a
+//   pixel. Every pixel centre is at least half a pixel's diagonal, 0.707 px, from one of them. Only
+//   a ball of at least this radius finds such a contact; the budget has 0.709 px;
+// - two have a contact that varies with the number. It lies at most 15/64 px from the centre of a
+//   pixel along each axis, so that much smaller balls find it at every value;
+// - three have triangles that are far apart, so that there is something to cull.
+
+constexpr double kCell = 20;      // px, of a cell along each axis
+constexpr double kUlp = 0x1p-45;  // of the largest coordinates, 128 to 256
+
+// The triangles of a contact at risk, at the origin. Their images in the view z are segments.
+// slope: that of their common line along the depth.
+std::vector<Corners> at_risk(double slope) {
+  const Vec3 up(3, 3, 3 * slope), down(3, -3, -1.5 * slope), depth(0, 0, 2.5);
+  return {{-up - depth, up - depth, depth}, {depth - down, depth + down, -depth}};
+}
+
+// The triangles of a contact that varies, about the origin: one for each object. With harmless
+// values each triangle is about 11 px long, and in each view there is room for the centre of a
+// pixel on both sides of the line along which the two cross.
+std::vector<Corners> varying(const std::string& family, double value) {
+  const auto sheet = [](const Vec3& along, const Vec3& across, double aspect) {
+    const Vec3 u = 2.25 * along, v = 2.5 / aspect * across;
+    return Corners{-u - v, u - v, 2 * v};
+  };
+  const auto crossing = [&](double aspect) {
+    return std::vector<Corners>{sheet(Vec3(1, -2, 1), Vec3(1, 0, -1), aspect),
+                                sheet(Vec3(2, -1, 1), Vec3(0, -1, -1), aspect)};
+  };
+  // A triangle whose tip goes through the sheet of crossing(1). That lies in the plane
+  // x + y + z = 0.
+  const auto wedge = [](const Vec3& tip) { return Corners{tip, {7.5, -1.5, 6}, {-1.5, 7.5, 6}}; };
+  std::vector<Corners> out = crossing(family == "slivers" ? value : 1);
+  if (family == "mixed") {
+    for (Vec3& p : out[1]) p /= value;
+  } else if (family == "edge-on") {
+    for (Vec3& p : out[1]) p -= (1 - 1 / value) / 2 * (p[0] + p[1]) * Vec3(1, 1, 0);
+  } else if (family == "overlap" || family == "gap") {
+    const double depth = std::nearbyint(value / kUlp) * (family == "gap" ? -kUlp : kUlp);
+    out[1] = wedge(-depth * Vec3(1, 1, 2));
+  } else if (family == "stack") {
+    const double distance = stack_gap(value);
+    out = {wedge(-distance * Vec3(2, 2, 3)), out[0]};
+    for (const double at : {-distance, distance})
+      out.push_back(shapes::shifted(out[1], Vec3::Constant(at)));
+  } else if (family != "slivers" && family != "offset" && family != "scale") {
+    throw std::logic_error("contact_cells: no family " + family);
+  }
+  return out;
+}
+
+// Moves two triangles so far apart that a view shows it, also with oriented boxes of triangles.
+std::vector<Corners> apart(std::vector<Corners> triangles) {
+  triangles.resize(2);
+  for (const int o : {0, 1}) {
+    for (Vec3& p : triangles[o]) p = p / 2 + Vec3::Constant(4 * o - 2);
+  }
+  return triangles;
+}
+
 Scene cloth_apart(const ClothApart& wanted) {
   const SceneRequest request = parse_scene_name(wanted.name);
   ClothSettings settings;
@@ -111,23 +178,16 @@ Scene cloth_apart(const ClothApart& wanted) {
   return scene;
 }
 
-void fill(AnswerCounts& counts, const Scene& scene, const TruePairs& truth, const Errors& errors,
-          std::uint64_t candidates) {
-  counts.colliding = truth.pairs.size();
-  counts.missed = errors.missed;
-  counts.missed_triangles = errors.missed_triangles;
-  counts.candidates = candidates;
-  counts.triangles = scene.triangles.size();
-  counts.objects = scene.objects.size();
-}
+// ---- runs ----
 
-// The number of missed pairs that penetrate.
-std::uint64_t missed_penetrating(const Scene& scene, const TruePairs& truth,
-                                 const std::vector<TrianglePair>& pairs) {
-  std::vector<TrianglePair> missed;
-  std::set_difference(truth.pairs.begin(), truth.pairs.end(), pairs.begin(), pairs.end(),
-                      std::back_inserter(missed));
-  return count_contacts(scene, missed).penetrating;
+AnswerCounts answer_counts(const Scene& scene, const TruePairs& truth, const Errors& errors,
+                           std::uint64_t candidates) {
+  return {.colliding = truth.pairs.size(),
+          .missed = errors.missed,
+          .missed_triangles = errors.missed_triangles,
+          .candidates = candidates,
+          .triangles = scene.triangles.size(),
+          .objects = scene.objects.size()};
 }
 
 std::uint64_t hash_of(const std::vector<TrianglePair>& pairs) {
@@ -139,9 +199,10 @@ std::uint64_t hash_of(const std::vector<TrianglePair>& pairs) {
 PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& record) {
   const std::vector<TrianglePair> pairs = record.collisions.all();
   PointResult out{.answer = hash_of(pairs), .device = answered(record)};
-  RunCounts counts;
-  fill(counts, scene, truth, errors_of(truth, pairs), record.found.count);
-  counts.missed_penetrating = missed_penetrating(scene, truth, pairs);
+  std::vector<TrianglePair> missed;
+  std::ranges::set_difference(truth.pairs, pairs, std::back_inserter(missed));
+  RunCounts counts{answer_counts(scene, truth, errors_of(truth, pairs), record.found.count)};
+  counts.missed_penetrating = count_contacts(scene, missed).penetrating;
   counts.colliding_triangles = truth.triangles;
   counts.kept_triangles = record.found.triangle_count;
   counts.kept_objects = record.found.object_count;
@@ -149,9 +210,8 @@ PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& 
   counts.promises = guaranteed(record.options);
   if (counts.promises && !record.promise.holds) counts.revoked = true;
   counts.scene_hash = record.scene_hash;
-  const Method method = record.options.method;
   counts.object_triangles = record.found.swept_triangles();
-  if (draws(method)) {
+  if (draws(record.options.method)) {
     const Stage sum = work_of(record.trace);
     counts.drawn = {sum.queries, sum.draws, sum.queries_saved, sum.draws_saved};
     if (const ViewReport* view = widest_budget(record.found.views()))
@@ -159,6 +219,36 @@ PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& 
   }
   out.counts = std::move(counts);
   return out;
+}
+
+// A point is left out if the size of triangles requires a higher resolution.
+constexpr int kMostSizedResolution = 8192;  // px
+
+// The least resolution at which the triangles of the scene that can take part cover `pixels` pixels
+// (the area of their image) on average, over the triangles and the views x, y, z. 0 if they have no
+// area.
+SizeCounts size_for(const Scene& scene, double pixels) {
+  constexpr int kSample = 256;  // px; areas grow with the square of the resolution
+  const Regions regions = find_regions(scene, {.self = has_self(scene)});
+  double area = 0;
+  std::uint64_t count = 0;
+  for (const View& view : parse_views("x,y,z")) {
+    const std::optional<Window> window =
+        regions.places.empty() ? std::nullopt : fit_window(view, regions.places, kSample);
+    if (!window) continue;
+    for (const std::uint32_t t : regions.triangles) {
+      const auto corners = scene.corners(t);
+      const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      area += 0.5 * std::abs(normal.dot(view.rows.row(2).transpose())) / window->pixel_size /
+              window->pixel_size;
+      ++count;
+    }
+  }
+  const double mean = area / static_cast<double>(count);
+  if (!(mean > 0)) return {};  // also without triangles, where mean is NaN
+  const double side = std::ceil(kSample * std::sqrt(pixels / mean));
+  return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
+          .mean_pixels = mean * side * side / kSample / kSample};
 }
 
 Peer peer_named(const std::string& name) {
@@ -178,6 +268,49 @@ std::string text_of(const CountValue& value) {
 }
 
 }  // namespace
+
+bool varies(const TrianglePair& pair, const ContactCells& cells) {
+  return pair.a < static_cast<std::uint32_t>(cells.side * cells.side) && pair.a % 2 == 0 &&
+         pair.a % 6 != 0;
+}
+
+Scene contact_cells(const ContactCells& wanted) {
+  const double value = std::strtod(wanted.value.c_str(), nullptr);
+  shapes::Random random(17);
+  const auto near = [&random] { return (static_cast<double>(random.below(16)) - 7.5) / 32; };
+  const std::vector<Corners> contact = varying(wanted.family, value);
+  std::vector<std::vector<Corners>> objects(contact.size());
+  for (int cell = 0; cell < wanted.side * wanted.side; ++cell) {
+    const int i = cell / wanted.side, j = cell % wanted.side, axis = cell / 6 % 3, kind = cell % 6;
+    Vec3 middle =
+        kCell * (Vec3(i, j, (i + j) % wanted.side) - Vec3::Constant((wanted.side - 1) / 2.0));
+    for (const int k : {0, 1, 2}) middle[k] += kind == 0 ? 0 : 0.5 + near();
+    const std::vector<Corners> triangles = kind == 0       ? at_risk((cell % 5 - 2) / 8.0)
+                                           : kind % 2 == 0 ? contact
+                                                           : apart(contact);
+    for (std::size_t o = 0; o < triangles.size(); ++o) {
+      Corners& placed = objects[o].emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3& p = triangles[o][c];
+        placed[c] = middle + Vec3(p[(5 - axis) % 3], p[(6 - axis) % 3], p[(7 - axis) % 3]);
+      }
+    }
+  }
+  // Small triangles at two corners give all objects the same box, as wide as the window.
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    for (const double at : {-kCellsResolution / 2.0, kCellsResolution / 2.0}) {
+      Corners& corner = objects[o].emplace_back();
+      corner.fill(Vec3::Constant(at));
+      for (const std::size_t k : {1, 2})
+        corner[k][static_cast<Eigen::Index>((o + k) % 3)] -= std::copysign(0x1p-6, at);
+    }
+  }
+  SceneBuilder scene("contacts", "contacts");
+  for (std::size_t o = 0; o < objects.size(); ++o)
+    scene.add(shapes::soup(objects[o]), "object" + std::to_string(o));
+  return transformed(scene.finish(), wanted.family == "scale" ? value : 1,
+                     Vec3::Constant(wanted.family == "offset" ? value : 0));
+}
 
 const Scene& open_scene(const PointScene& scene, MeasurementContext& lab) {
   if (const auto* of = std::get_if<NamedScene>(&scene)) return lab.scene(of->name);
@@ -217,30 +350,6 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
               "run farcull doctor; the device is not deterministic");
 }
 
-SizeCounts size_for(const Scene& scene, double pixels) {
-  constexpr int kSample = 256;  // px; areas grow with the square of the resolution
-  const Regions regions = find_regions(scene, {.self = has_self(scene)});
-  double area = 0;
-  std::uint64_t count = 0;
-  for (const View& view : parse_views("x,y,z")) {
-    const std::optional<Window> window =
-        regions.places.empty() ? std::nullopt : fit_window(view, regions.places, kSample);
-    if (!window) continue;
-    for (const std::uint32_t t : regions.triangles) {
-      const auto corners = scene.corners(t);
-      const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-      area += 0.5 * std::abs(normal.dot(view.rows.row(2).transpose())) / window->pixel_size /
-              window->pixel_size;
-      ++count;
-    }
-  }
-  const double mean = count == 0 ? 0 : area / static_cast<double>(count);
-  if (!(mean > 0)) return {};
-  const double side = std::ceil(kSample * std::sqrt(pixels / mean));
-  return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
-          .mean_pixels = mean * side * side / kSample / kSample};
-}
-
 std::string answered(const Record& record) {
   const UsedDevice& used = record.found.device;
   return used.gl ? used.gl->renderer : used.cpu ? "native" : "cpu";
@@ -256,20 +365,19 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
 }
 
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab) {
-  RunOptions options;
-  options.method = point.method;
-  options.resolution = point.resolution;
-  options.radius = point.radius.value_or(RadiusRule{});
+  RunOptions options{.method = point.method,
+                     .resolution = point.resolution,
+                     .radius = point.radius.value_or(RadiusRule{}),
+                     .depth = point.depth_mode,
+                     .depth_format = point.depth_format.value_or(DepthFormat::float32),
+                     .rounds = point.form.rounds,
+                     .clear = point.form.clear,
+                     .objects_alone = point.form.objects_alone,
+                     .conservative = point.form.conservative,
+                     .views = point.form.views,
+                     .device = lab.device(),
+                     .verify = false};
   if (!point.offset.empty()) options.offset = point.offset;
-  options.depth = point.depth_mode;
-  options.depth_format = point.depth_format.value_or(DepthFormat::float32);
-  options.views = point.views;
-  options.rounds = point.rounds;
-  options.clear = point.clear;
-  options.objects_alone = point.objects_alone;
-  options.conservative = point.conservative;
-  options.device = lab.device();
-  options.verify = false;
   return options;
 }
 
@@ -332,8 +440,7 @@ PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsign
                          std::vector<TrianglePair>* pairs) {
   const Scene& scene = open_scene(point.scene, lab);
   const Peer peer = peer_named(point.peer);
-  PointResult out{.device = "cpu"};
-  out.left_out = !peer.missing.empty() ? peer.missing : peer.refuses ? peer.refuses(scene) : "";
+  PointResult out{.device = "cpu", .left_out = why_left_out(peer, scene)};
   if (!out.left_out.empty()) return out;
   const TruePairs truth = without_neighbours(scene, lab.truth());
   const BenchRun run = peer.set_up(threads);
@@ -342,8 +449,7 @@ PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsign
   const BenchAnswer answer = run(scene);
   const double total = watch.ms();
   const Errors errors = errors_of(truth, answer.pairs);
-  PeerCounts counts;
-  fill(counts, scene, truth, errors, answer.candidate_pairs);
+  PeerCounts counts{answer_counts(scene, truth, errors, answer.candidate_pairs)};
   counts.wrong = errors.wrong;
   counts.colliding_triangles = truth.triangles;
   counts.library = peer.library;

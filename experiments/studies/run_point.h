@@ -4,42 +4,24 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/scene/scene.h"
-#include "experiments/measure/harness.h"
-#include "experiments/method/run.h"
-#include "experiments/peers/peer.h"
-#include "experiments/studies/counts.h"
-#include "experiments/studies/point.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 
-/// Makes the scene of the point the current one of the lab. Throws Error as load_scene() and
+/// Makes the scene of the point the current one of `lab`. Throws Error as load_scene() and
 /// FrameSource do.
 const Scene& open_scene(const PointScene& scene, MeasurementContext& lab);
-
-/// The least resolution at which the triangles of the scene that can take part cover `pixels`
-/// pixels (the area of their image) on average, over the triangles and the views x, y, z. 0 if they
-/// have no area.
-SizeCounts size_for(const Scene& scene, double pixels);
-
-/// A point is left out if the size of triangles requires a higher resolution.
-constexpr int kMostSizedResolution = 8192;
 
 /// The options of a run at the point. No accounting, since the run is compared with the truth.
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
-/// The scene of a point: pairs of triangles in cells, each with pixels of its own in the views x, y
-/// and z at kCellsResolution. In a sixth of the cells the triangles meet at a corner of a pixel, so
-/// that sampling loses them if the ball is too small; in a third they meet as the family and its
-/// number say; in the other half they are apart, so that there is something to cull. Throws
-/// std::logic_error for an unknown family.
-constexpr int kCellsResolution = 512;
+/// Pairs of triangles in cells, each with pixels of its own in the views x, y and z at
+/// kCellsResolution (run_point.cpp has the cells). Throws std::logic_error for an unknown family.
+constexpr int kCellsResolution = 512;  // px
 Scene contact_cells(const ContactCells& scene);
 /// Whether a pair of this scene that collides is in a cell where the contact varies with the
 /// number.
@@ -114,18 +96,17 @@ std::string library_of_distances(const Point& point);
 
 /// Counts for one drawing of every triangle that takes part, in each view of a run of FAR.
 struct Fragments {
-  std::uint64_t covered = 0;   // pixel centres in the closed proxies: those that run the fragment
-                               // program
-  std::uint64_t solid = 0;     // of these, those whose line along the depth meets the solid: stored
-                               // or queried
+  std::uint64_t covered = 0;  // pixel centres in the closed proxies; each runs the fragment program
+  std::uint64_t solid = 0;    // those pixel centres whose line along the depth meets the solid, so
+                              // that it is stored or queried
   std::uint64_t elements = 0;  // proxies drawn
 };
 
 /// Counts on the CPU, from the record's views and radii and the function that the shaders run
-/// (SolidProgram::interval), so that the count depends on the device only through its budget.
-/// Ignores that a rasterizer snaps corners, which may change whether it covers a pixel centre that
-/// is very near a proxy's edge. offset: obb or exact; only this one is counted, even if a run tries
-/// another one first. Precondition: record is of `far` with fragment depth on this scene.
+/// (SolidProgram::interval), so that the count depends on the device only through its budget. It
+/// ignores that a rasterizer snaps corners, which matters only for pixel centres very near a
+/// proxy's edge. offset: obb or exact; only this one is counted, even if a run tries another one
+/// first. Precondition: record is of `far` with fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
 // Measures how often FAR misses a pair at a radius, on many small patches of triangles that are

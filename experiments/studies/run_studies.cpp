@@ -7,18 +7,11 @@
 #include <filesystem>
 #include <map>
 #include <new>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <utility>
-#include <variant>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "experiments/measure/harness.h"
-#include "experiments/method/method.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/system/output_file.h"
@@ -32,8 +25,8 @@ struct Task {
   const Study* study = nullptr;
   std::vector<Point> points;
   std::vector<PointKey> keys;
-  std::vector<std::size_t> open;            // positions
-  std::map<std::size_t, Measurement> rows;  // of open points: what their rows hold so far
+  std::vector<std::size_t> open;            // positions of the points to measure
+  std::map<std::size_t, Measurement> rows;  // what the rows of open points hold so far
   double seconds = 0;                       // of this run
   std::size_t measured = 0;                 // points
   std::size_t visits = 0, visits_left = 0;  // a visit: an untimed point, or a round of a timed one
@@ -58,8 +51,8 @@ bool is_alike(const Provenance& a, const Provenance& b) {
          a.cpu_features == b.cpu_features;
 }
 
-// Refuses to continue if earlier rows are of another program or machine: a table would show both as
-// one.
+// Refuses to continue if earlier rows are of another program or machine: a table would not tell
+// them apart.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
@@ -87,7 +80,7 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
 using Json = nlohmann::ordered_json;
 
 // Drops the void rounds, so that they are measured again.
-void drop_void_rounds(JsonObject& times) {
+void drop_void_rounds(Json& times) {
   Json kept = Json::array();
   for (const Json& round : times["rounds"]) {
     if (!round["void"].get<bool>()) kept.push_back(round);
@@ -133,13 +126,11 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   return task;
 }
 
-// Why this machine does not have the scene; empty if it does.
+// Why this machine does not have the scene; empty if it has it.
 std::string lacking(const PointKey& point) {
   const std::string base = point.scene.substr(0, point.scene.find_first_of(":@"));
-  const std::vector<BuiltinScene>& known = builtin_scenes();
-  const auto entry = std::find_if(known.begin(), known.end(),
-                                  [&](const BuiltinScene& scene) { return scene.name == base; });
-  if (entry == known.end() || !entry->needs_meshes) return "";
+  const auto entry = std::ranges::find(builtin_scenes(), base, &BuiltinScene::name);
+  if (entry == builtin_scenes().end() || !entry->needs_meshes) return "";
   const std::string folder = mesh_folder();
   std::error_code code;
   if (std::filesystem::is_directory(folder, code) && !std::filesystem::is_empty(folder, code) &&
@@ -148,8 +139,8 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Estimates the seconds that are left. A visit takes the mean time of the visits so far in this
-// run: those of the same study, or of all studies if that one had none yet.
+// Estimates the seconds that are left. A visit is assumed to take the mean time of this run's
+// visits to the same study, or to all studies if that study had none yet.
 std::optional<double> remaining(const std::vector<Task>& tasks) {
   double seconds = 0;
   std::size_t visits = 0;
@@ -167,14 +158,10 @@ std::optional<double> remaining(const std::vector<Task>& tasks) {
   return out;
 }
 
-bool has_times(const Measurement& row) {
-  return row.left_out.empty() && rounds_in(row).value_or(0) > 0;
-}
-
 // Adds a round and computes the total again.
-void add_round(JsonObject& times, const std::vector<double>& ms, const std::optional<Load>& load,
+void add_round(Json& times, const std::vector<double>& ms, const std::optional<Load>& load,
                bool is_void) {
-  Json rounds = times->value("rounds", Json::array());
+  Json rounds = times.value("rounds", Json::array());
   rounds.push_back({{"ms", ms}, {"load", load ? Json(load->share) : Json()}, {"void", is_void}});
   std::vector<double> all;
   for (const Json& round : rounds) {
@@ -247,7 +234,7 @@ class Runner {
     return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
   }
 
-  // Takes over results that the store has for the same points in other studies.
+  // Keeps the results that the store has, for the same points in other studies.
   void find_known() {
     std::set<std::int64_t> alike;
     for (const auto& [run, then] : store_.runs()) {
@@ -263,10 +250,11 @@ class Runner {
       }
     }
   }
-  // Keeps a row for other studies. Not of a frame of a motion: it may depend on earlier frames.
+  // Keeps a row for other studies, unless it is a frame of a motion, which may depend on earlier
+  // frames.
   void know(const PointKey& key, const Measurement& row, bool plain) {
     if (key.frame >= 0 || !row.left_out.empty()) return;
-    if (has_times(row)) {
+    if (rounds_in(row).value_or(0) > 0) {
       Measurement& times = timed_[key];
       if (rounds_in(times).value_or(0) < *rounds_in(row)) times.times = row.times;
     }
@@ -306,8 +294,8 @@ class Runner {
     }
   }
 
-  // The row that the point has; else one with the counts that another study has of it; else one
-  // with the counts of a run now. Empty if that run failed.
+  // The row of the point; if there is none, a row with the counts that another study has of it; if
+  // there are none, a row with the counts of a run now. Empty if that run failed.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;
@@ -326,7 +314,8 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // Does all runs of a round for a scene's points, in turn; repeats them if the machine was busy.
+  // Does all runs of a round for a scene's points, in turn. Repeats the round if the machine was
+  // busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -375,7 +364,7 @@ class Runner {
     const Stopwatch watch;
     std::optional<Measurement> row = row_without_times(at);
     if (row && row->left_out.empty() && is_timed(at.point())) {
-      Json rounds = row->times->value("rounds", Json::array());
+      Json rounds = row->times.value("rounds", Json::array());
       row->times = Json{{"rounds", std::move(rounds)}, {"no_times", true}};
     }
     if (row) put(at, std::move(*row));
@@ -404,20 +393,21 @@ class Runner {
     now_.study = at.task->study->name;
     now_.point = describe(at.key());
     now_.remaining_s = remaining(tasks_);
-    show(stage);
+    show_stage(stage);
   }
-  void show(const std::string& stage) {
+  void show_stage(const std::string& stage) {
     now_.stage = stage;
     if (progress_) progress_(now_);
   }
 
-  // Empty if measuring failed, or gave another answer than before. The failure is then noted, the
-  // point is not measured again in this run, and the next point gets a new device.
+  // Empty if measuring failed, or gave another answer than an earlier run. Then the failure is
+  // noted, this run does not measure the point again, and the next point gets a new device.
   std::optional<PointResult> measure(const At& at) {
     std::string why = lacking(at.key());
     if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
     if (!lab_) {
-      lab_.emplace(request_.device, [this](const ProgressStep& step) { show(text_of(step)); });
+      lab_.emplace(request_.device,
+                   [this](const ProgressStep& step) { show_stage(text_of(step)); });
     }
     std::string failure;
     try {
@@ -436,13 +426,13 @@ class Runner {
     return std::nullopt;
   }
 
-  // All runs of a point must agree: runs of this process in everything, and with runs of an earlier
-  // process in the counts.
+  // All runs of a point must agree: runs of this process in everything but times, and runs of
+  // different processes in the counts.
   void require_as_before(const At& at, const PointResult& result) {
     const auto [first, is_new] = first_.try_emplace({at.task, at.position}, result);
     if (!is_new) return require_same(at.key(), first->second, result);
     const auto row = at.task->rows.find(at.position);
-    if (row == at.task->rows.end() || *stored(result).counts == *row->second.counts) return;
+    if (row == at.task->rows.end() || stored(result).counts == row->second.counts) return;
     throw Error(describe(at.key()), "its counts are not those of an earlier round",
                 "run farcull doctor; the device is not deterministic");
   }
@@ -459,9 +449,9 @@ class Runner {
   std::int64_t run_ = 0;
   Interruptible* interruptible_ = nullptr;
   std::set<Place> closed_;                   // points that are whole, or failed
-  std::map<Place, PointResult> first_;       // of timed points: the first run
+  std::map<Place, PointResult> first_;       // the first run of each timed point
   std::map<PointKey, Measurement> timed_;    // the times that some study has of a point
-  std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of it
+  std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of a point
 };
 
 }  // namespace
@@ -481,12 +471,11 @@ StudiesSummary run_studies(const StudiesRequest& request,
     summary.studies.push_back(
         {.study = study.name, .points = mine, .before = mine - task.open.size()});
   }
-  const bool timed = request.times && std::ranges::any_of(tasks, [](const Task& task) {
-                       return std::ranges::any_of(
-                           task.open, [&](std::size_t i) { return is_timed(task.points[i]); });
-                     });
   std::optional<TimingLock> lock;
-  if (timed) lock.emplace(request.lock);
+  for (const Task& task : tasks) {
+    const auto timed = [&](std::size_t i) { return is_timed(task.points[i]); };
+    if (request.times && !lock && std::ranges::any_of(task.open, timed)) lock.emplace(request.lock);
+  }
   Runner(request, summary, tasks, store, progress).run();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     StudySummary& study = summary.studies[t];
@@ -494,7 +483,7 @@ StudiesSummary run_studies(const StudiesRequest& request,
     study.seconds = tasks[t].seconds;
     for (const Row& row : store.study(study.study).rows) {
       study.left_out += !row.measurement.left_out.empty();
-      for (const Json& round : row.measurement.times->value("rounds", Json::array()))
+      for (const Json& round : row.measurement.times.value("rounds", Json::array()))
         study.void_rounds += round["void"].get<bool>();
       if (breaks_promise(row.measurement))
         summary.broken.push_back(study.study + ": " + describe(row.point));

@@ -5,27 +5,20 @@
 // a round the points of one scene run in turn, so that a slow moment falls on all methods alike.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "experiments/studies/store.h"
-#include "experiments/studies/study.h"
 #include "experiments/system/machine.h"
 
 namespace farcull {
 
 // ---- shards, each measured into its own file, and their merge ----
 
-// Versions of libraries: the rows of one contestant must have one version of its library. Otherwise
-// a store that is resumed after an upgrade, or shards of two machines, would hold two versions, and
-// a table would show them as one.
+// The rows of one contestant must have one version of its library. Otherwise a store that is
+// resumed after an upgrade, or shards of two machines, would hold two versions, and a table would
+// not tell them apart.
 
-/// Refuses to measure points (those at the positions `open` of the grid) if stored rows of their
+/// Refuses to measure the points at the positions `open` of the grid if stored rows of their
 /// contestant or peer name another version of its library than the present one. A contestant that
-/// is absent now adds no rows, so its old ones stay. Throws Error naming the store at `path`, and
+/// is missing now adds no rows, so its old rows stay. Throws Error naming the store at `path`, and
 /// each such contestant with both versions.
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
                            const std::vector<Point>& points, const std::vector<std::size_t>& open);
@@ -91,7 +84,7 @@ struct StudiesProgress {
   std::string point;                  // in words
   std::string stage;                  // of its run
   std::size_t done = 0, points = 0;   // of this shard in all studies, earlier runs included
-  std::optional<double> remaining_s;  // at the mean time so far; empty until something was measured
+  std::optional<double> remaining_s;  // estimated; empty until something was measured
 };
 
 struct StudySummary {
@@ -99,8 +92,8 @@ struct StudySummary {
   std::size_t points = 0;       // of this shard
   std::size_t before = 0;       // whole before this run
   std::size_t measured = 0;     // in this run, including those left out
-  std::size_t left_out = 0;     // rows, old and new, that say why nothing was measured
-  std::size_t void_rounds = 0;  // of timed points, in rows old and new
+  std::size_t left_out = 0;     // old and new rows that say why nothing was measured
+  std::size_t void_rounds = 0;  // in old and new rows of timed points
   double seconds = 0;           // of this run
 };
 
@@ -115,14 +108,14 @@ struct StudiesSummary {
 };
 
 /// Measures every point that has no row, or whose row says why nothing was measured, lacks rounds
-/// or has void ones. If another study of the store has times of the same point, these are taken; so
-/// are counts, between studies that are `plain`. Holds the TimingLock while points are timed. After
-/// an Error at a point the error is noted and the next point gets a new device; an Error of the
-/// store ends the run. Signals end the program, with a line that says how many points are stored.
-/// Throws Error if the folder cannot be created, if Store or Store::declare() refuses the store, if
-/// another process measures times, if the store has rows of a study and `resume` is not set, and if
-/// it has rows of another commit of farcull, another device, other CPU features, or another version
-/// of a library.
+/// or has void ones. Takes the times of the same point from another study of the store if there are
+/// any; also the counts, if both studies are `plain`. Holds the TimingLock while points are timed.
+/// After an Error at a point the error is noted and the next point gets a new device; an Error of
+/// the store ends the run. Signals end the program, with a line that says how many points are
+/// stored. Throws Error if the folder cannot be created, if Store or Store::declare() refuses the
+/// store, if another process measures times, if the store has rows of a study and `resume` is not
+/// set, and if it has rows of another commit of farcull, another device, other CPU features, or
+/// another version of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

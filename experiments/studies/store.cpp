@@ -8,24 +8,16 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <ctime>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <utility>
 
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/native/canvas.h"
 #include "experiments/method/session.h"
-#include "experiments/studies/counts.h"
 #include "experiments/system/machine.h"
 
 namespace farcull {
-
-// ---- typed counts and times as the values in a row of a store ----
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -41,87 +33,6 @@ void add(NamedCounts& out, std::string_view name, const Value& value) {
     out.emplace_back(name, value);
   }
 }
-
-}  // namespace
-
-JsonObject::JsonObject() : value_(std::make_unique<Json>(Json::object())) {}
-JsonObject::JsonObject(const JsonObject& other) : value_(std::make_unique<Json>(*other)) {}
-JsonObject::JsonObject(JsonObject&& other) noexcept = default;
-JsonObject& JsonObject::operator=(const JsonObject& other) {
-  value_ = std::make_unique<Json>(*other);
-  return *this;
-}
-JsonObject& JsonObject::operator=(JsonObject&& other) noexcept = default;
-JsonObject& JsonObject::operator=(const Json& value) {
-  value_ = std::make_unique<Json>(value);
-  return *this;
-}
-JsonObject::~JsonObject() = default;
-
-Json& JsonObject::operator[](const char* key) { return (*value_)[key]; }
-const Json& JsonObject::operator[](const char* key) const {
-  return static_cast<const Json&>(*value_)[key];
-}
-
-NamedCounts to_columns(const Counts& counts) {
-  NamedCounts out;
-  std::visit(
-      [&](const auto& of) {
-        using Of = std::decay_t<decltype(of)>;
-        if constexpr (std::is_same_v<Of, LibraryCounts>)
-          out = of.values;
-        else if constexpr (HasFields<Of>)
-          add(out, "", of);
-      },
-      counts);
-  return out;
-}
-
-Measurement stored(const PointResult& result) {
-  Measurement out{.device = result.device, .left_out = result.left_out};
-  for (const auto& [name, value] : to_columns(result.counts))
-    std::visit([&, &key = name](const auto& of) { (*out.counts)[key] = of; }, value);
-  result.times.fields([&](std::string_view name, const auto& ms) {
-    if constexpr (requires { ms.has_value(); }) {
-      if (ms) (*out.times)[std::string(name)] = *ms;
-    } else if (!ms.empty()) {
-      (*out.times)[std::string(name)] = ms;
-    }
-  });
-  return out;
-}
-
-bool breaks_promise(const Measurement& measurement) {
-  const Json& counts = *measurement.counts;
-  if (!counts.value("promises", false)) return false;
-  // A contestant also breaks its guarantee if it does not answer.
-  for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
-                            "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
-    if (counts.value(count, std::uint64_t{0}) > 0) return true;
-  }
-  return false;
-}
-
-std::optional<int> rounds_in(const Measurement& row) {
-  const auto rounds = row.times->find("rounds");
-  if (rounds == row.times->end() || !rounds->is_array()) return std::nullopt;
-  return static_cast<int>(rounds->size());
-}
-
-bool is_whole(const Measurement& row) {
-  return rounds_in(row).value_or(kRounds) >= kRounds || row.times->value("no_times", false);
-}
-
-// ---- the store ----
-
-bool StoredStudy::complete() const {
-  return rows.size() == declaration.points.size() &&
-         std::ranges::all_of(rows, [](const Row& row) { return is_whole(row.measurement); });
-}
-
-namespace {
-
-constexpr const char* kDeviceFolder = "on-";
 
 // The tables of a file of version kStoreVersion; the columns of Provenance and PointKey are in the
 // order of their fields. `results` is a view for queries in SQL.
@@ -204,7 +115,7 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Writes numbers in full. Replaces invalid UTF-8 in a text (of a driver, say).
+// Writes numbers in full. Replaces invalid UTF-8, which the text of a driver may have.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -250,12 +161,63 @@ std::string grid_text(const GridChoice& choice) {
 
 }  // namespace
 
+// ---- typed counts and times as the values in a row of a store ----
+
+NamedCounts to_columns(const Counts& counts) {
+  NamedCounts out;
+  std::visit(
+      [&](const auto& of) {
+        using Of = std::decay_t<decltype(of)>;
+        if constexpr (std::is_same_v<Of, LibraryCounts>)
+          out = of.values;
+        else if constexpr (HasFields<Of>)
+          add(out, "", of);
+      },
+      counts);
+  return out;
+}
+
+Measurement stored(const PointResult& result) {
+  Measurement out{.device = result.device, .left_out = result.left_out};
+  for (const auto& [name, value] : to_columns(result.counts))
+    std::visit([&, &key = name](const auto& of) { out.counts[key] = of; }, value);
+  result.times.fields([&](std::string_view name, const std::optional<double>& ms) {
+    if (ms) out.times[std::string(name)] = *ms;
+  });
+  return out;
+}
+
+bool breaks_promise(const Measurement& measurement) {
+  const Json& counts = measurement.counts;
+  if (!counts.value("promises", false)) return false;
+  // A contestant also breaks its guarantee if it does not answer.
+  for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
+                            "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
+    if (counts.value(count, std::uint64_t{0}) > 0) return true;
+  }
+  return false;
+}
+
+std::optional<int> rounds_in(const Measurement& row) {
+  const auto rounds = row.times.find("rounds");
+  if (rounds == row.times.end() || !rounds->is_array()) return std::nullopt;
+  return static_cast<int>(rounds->size());
+}
+
+bool is_whole(const Measurement& row) {
+  return rounds_in(row).value_or(kRounds) >= kRounds || row.times.value("no_times", false);
+}
+
+// ---- the store ----
+
+bool StoredStudy::complete() const {
+  return rows.size() == declaration.points.size() &&
+         std::ranges::all_of(rows, [](const Row& row) { return is_whole(row.measurement); });
+}
+
 Provenance provenance_now(const std::string& device, const std::string& options) {
   Provenance out{.started = utc_now(),
                  .commit = FARCULL_COMMIT,
-                 .gl_vendor = {},
-                 .gl_renderer = {},
-                 .gl_version = {},
                  .cpu = cpu_model(),
                  .cpu_features = cpu_features(),
                  .cores = usable_cores(),
@@ -446,8 +408,8 @@ void Store::add(const std::string& study, const Row& row) {
     insert.bind(3, row.run);
     insert.bind(4, row.measured);
     insert.bind(5, row.measurement.device);
-    insert.bind(6, text_of(*row.measurement.counts));
-    insert.bind(7, text_of(*row.measurement.times));
+    insert.bind(6, text_of(row.measurement.counts));
+    insert.bind(7, text_of(row.measurement.times));
     insert.bind(8, row.measurement.left_out);
     if (insert.exec() == 0) {
       throw Error(state_->path,
@@ -504,7 +466,7 @@ std::string device_folder(const std::string& folder, const std::string& device) 
         "--devices", "'" + device + "' is no device",
         "give all, or some of native, hardware, software and numbers, as in native,software");
   }
-  return folder + "/" + kDeviceFolder + device;
+  return folder + "/on-" + device;
 }
 
 std::string store_path(const std::string& folder, int shard, int of) {

@@ -7,12 +7,7 @@
 // PRAGMA user_version holds kStoreVersion, PRAGMA application_id kStoreId.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "experiments/studies/study.h"
 
@@ -24,7 +19,7 @@ struct Provenance {
   std::string commit;   // of the program
   /// Names of the GL device. If the native canvas draws, gl_renderer is "native" with the
   /// instruction set, as in "native (AVX3)", and the other two are empty.
-  std::string gl_vendor, gl_renderer, gl_version;
+  std::string gl_vendor = {}, gl_renderer = {}, gl_version = {};
   std::string cpu;           // model
   std::string cpu_features;  // as /proc/cpuinfo lists them
   unsigned cores = 0;

@@ -10,14 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
-#include <variant>
 
-#include "core/view/regions.h"
-#include "core/view/view.h"
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
@@ -58,9 +52,9 @@ std::vector<Point> scenes_grid(const GridChoice& choice) {
   return out;
 }
 
-// Pixels that triangles cover at kSceneResolution: the areas of their images in the views x, y and
-// z, ascending. Counts only triangles that may take part: their box meets another object's, or
-// their object is tested against itself.
+// How many pixels each triangle covers at kSceneResolution: the areas of the images in the views x,
+// y and z, ascending. Only of triangles that may take part: their box meets another object's box,
+// or their object is tested against itself.
 std::vector<double> covered_pixels(const Scene& scene) {
   std::vector<double> out;
   const Regions regions = find_regions(scene, {.self = true});
@@ -108,19 +102,18 @@ constexpr const char* kOriented = "fcl-obb";  // leaves of FCL's trees whose ori
 
 // Scans and models, smooth bodies, thin triangles, cloth.
 std::vector<PointScene> culled_scenes(bool quick) {
+  std::vector<const char*> names = {"two-bunnies",     "armadillo-elephant", "dragon-bunny",
+                                    "mannequin-devil", "two-tori",           "crowd:400",
+                                    "spheres:20000",   "needles:400",        "needles-crossed",
+                                    "random-soup",     "cad-cut:8000",       "crumpled:20000"};
   if (quick) {
-    return {NamedScene{"two-bunnies"},   NamedScene{"two-spheres"},
-            NamedScene{"crowd:60"},      NamedScene{"needles:60"},
-            NamedScene{"random-soup"},   NamedScene{"slivers:100"},
-            NamedScene{"crumpled:2000"}, MotionFrame{"cloth:450", 40, 100}};
+    names = {"two-bunnies", "two-spheres", "crowd:60",     "needles:60",
+             "random-soup", "slivers:100", "crumpled:2000"};
   }
-  return {NamedScene{"two-bunnies"},        NamedScene{"armadillo-elephant"},
-          NamedScene{"dragon-bunny"},       NamedScene{"mannequin-devil"},
-          NamedScene{"two-tori"},           NamedScene{"crowd:400"},
-          NamedScene{"spheres:20000"},      NamedScene{"needles:400"},
-          NamedScene{"needles-crossed"},    NamedScene{"random-soup"},
-          NamedScene{"cad-cut:8000"},       NamedScene{"crumpled:20000"},
-          MotionFrame{"cloth:800", 80, 100}};
+  std::vector<PointScene> out;
+  for (const char* name : names) out.push_back(NamedScene{name});
+  out.push_back(quick ? MotionFrame{"cloth:450", 40, 100} : MotionFrame{"cloth:800", 80, 100});
+  return out;
 }
 
 std::vector<Point> culling_grid(const GridChoice& choice) {
@@ -215,7 +208,7 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Nine is the smallest number of runs whose range holds the median of another nine with a
+// Nine is the smallest number of runs whose range contains the median of another nine runs with a
 // probability of 95 % (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
@@ -245,15 +238,9 @@ Study culling_study() {
 }
 
 Study efficiency_study() {
-  Study study;
-  study.name = "efficiency";
-  study.title = "Culling efficiency in motion";
-  study.question =
-      "How much smaller than what I-COLLIDE leaves is what FAR leaves to exact tests, and how much "
-      "does Quick-CULLIDE draw and ask less than CULLIDE, frame by frame over scenes that move?";
-  study.grid = [](const GridChoice& choice) {
+  const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    // At least six frames: the range of fewer does not contain the median with 95 %.
+    // At least six frames: with fewer, their range contains the median with less than 95 %.
     const long frames = choice.quick ? 6 : 12;
     for (const MovingCase& moving : moving_cases(choice.quick)) {
       for (long frame = 0; frame < frames; ++frame)
@@ -261,18 +248,18 @@ Study efficiency_study() {
     }
     return out;
   };
-  study.measure = measure_run_point;
-  return study;
+  return {.name = "efficiency",
+          .title = "Culling efficiency in motion",
+          .question =
+              "How much smaller than what I-COLLIDE leaves is what FAR leaves to exact tests, and "
+              "how much does Quick-CULLIDE draw and ask less than CULLIDE, frame by frame over "
+              "scenes that move?",
+          .grid = grid,
+          .measure = measure_run_point};
 }
 
 Study scaling_study() {
-  Study study;
-  study.name = "scaling";
-  study.title = "Time against size";
-  study.question =
-      "How does the time from triangles to exact pairs grow with the number of objects, of "
-      "triangles, of pixels, with density, and with the pairs that collide?";
-  study.grid = [](const GridChoice& choice) {
+  const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
     std::set<PointKey> had;
     for (const Case& c : cases(choice.quick)) {
@@ -282,9 +269,14 @@ Study scaling_study() {
     }
     return out;
   };
-  study.measure = measure_run_point;
-  study.plain = true;
-  return study;
+  return {.name = "scaling",
+          .title = "Time against size",
+          .question =
+              "How does the time from triangles to exact pairs grow with the number of objects, of "
+              "triangles, of pixels, with density, and with the pairs that collide?",
+          .grid = grid,
+          .measure = measure_run_point,
+          .plain = true};
 }
 
 Study scenes_study() {

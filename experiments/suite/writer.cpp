@@ -1,5 +1,5 @@
-// Makes and writes a suite.
-// Pairs are decided on all cores; each result has its own place, so the order is that of the IDs.
+// Makes and writes a suite. Pairs are decided on all cores; each result has its own place, so they
+// are in the order of their IDs.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>
@@ -9,16 +9,13 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
-#include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/suite/questions.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -119,7 +116,10 @@ class Folder {
   }
 
   void write(const std::string& name, const std::string& text, std::uint64_t items) {
-    make_parent(name);
+    const std::string parent = fs::path(path_ + "/" + name).parent_path().string();
+    std::error_code error;
+    fs::create_directories(parent, error);
+    if (error) throw Error(parent, error.message(), "name a folder that can be written");
     write_output(path_ + "/" + name, text);
     index_.files.push_back({name, text.size(), sha256(text), items});
   }
@@ -138,21 +138,13 @@ class Folder {
     write(folder + "pairs.csv", colliding_text(mesh), mesh.pairs.size());
   }
   void finish() {
-    std::sort(index_.files.begin(), index_.files.end(),
-              [](const auto& x, const auto& y) { return x.path < y.path; });
+    std::ranges::sort(index_.files, {}, &SuiteIndex::File::path);
     const std::string text = index_text(index_);
     write_output(path_ + "/suite.txt", text);
     index_.sum = sum_of(text);
   }
 
  private:
-  void make_parent(const std::string& name) const {
-    const std::string parent = fs::path(path_ + "/" + name).parent_path().string();
-    std::error_code error;
-    fs::create_directories(parent, error);
-    if (error) throw Error(parent, error.message(), "name a folder that can be written");
-  }
-
   std::string path_;
   SuiteIndex& index_;
 };
@@ -193,10 +185,8 @@ SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uin
 }
 
 SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings) {
-  const std::vector<PairFamily>& all = pair_families();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const PairFamily& x) { return x.name == family; });
-  if (found == all.end()) throw std::logic_error("make_pairs: no family " + family);
+  const auto found = std::ranges::find(pair_families(), family, &PairFamily::name);
+  if (found == pair_families().end()) throw std::logic_error("make_pairs: no family " + family);
   SuitePairs out;
   out.family = family;
   out.pairs.resize(pair_count(settings.size));

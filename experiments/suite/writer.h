@@ -2,11 +2,6 @@
 // The bytes depend only on the size and the seed, not on the machine or its number of cores.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "core/base/stage.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/suite/label.h"

@@ -1,19 +1,12 @@
 // Merges sorted lists: the next line of the result is the least of the next lines of all lists.
-
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <queue>
-#include <string_view>
-#include <utility>
 
-#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/text.h"
@@ -26,11 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kRecordRemedy =
-    "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote";
 constexpr const char* kAgain = "run the tile again";
 
-// A record, and the values of it that the merge uses.
+// A record, with those of its values that the merge uses.
 struct Source {
   std::string path;
   Json json;
@@ -39,7 +30,8 @@ struct Source {
 };
 
 [[noreturn]] void no_record(const std::string& path, const std::string& reason) {
-  throw Error(path, reason, kRecordRemedy);
+  throw Error(path, reason,
+              "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote");
 }
 
 // The value at a JSON pointer such as /tile/k. Throws Error if it is missing or has another type.
@@ -140,7 +132,7 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// A list, read once from its beginning to its end.
+// Reads a list once, from its beginning to its end.
 class List {
  public:
   explicit List(const Source& source) : source_(&source), file_(source.list, std::ios::binary) {
@@ -199,23 +191,15 @@ class List {
   Sha256 hash_;
 };
 
-// Raises the limit of open files: all lists are open at once, and a shell may have set a low limit.
-void open_many_files() {
-  rlimit files{};
-  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
-  files.rlim_cur = files.rlim_max;
-  ::setrlimit(RLIMIT_NOFILE, &files);
-}
-
 // Writes all rows in order; returns how many.
 std::uint64_t merge_lists(const std::vector<Source>& sources, const std::string& out) {
   StreamedOutput file(out);
   std::string piece = sources.front().columns + "\n";
-  const auto flush = [&] {
-    file.add(piece);
-    piece.clear();
-  };
-  open_many_files();
+  // All lists are open at once, and a shell may have set a low limit of open files.
+  if (rlimit files{}; ::getrlimit(RLIMIT_NOFILE, &files) == 0) {
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+  }
   std::vector<List> lists;
   const auto later = [&](std::size_t a, std::size_t b) { return lists[a].key() > lists[b].key(); };
   std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> next(later);
@@ -233,10 +217,13 @@ std::uint64_t merge_lists(const std::vector<Source>& sources, const std::string&
     last = list.key();
     piece.append(list.line()).push_back('\n');
     ++rows;
-    if (piece.size() >= (std::size_t{1} << 20)) flush();
+    if (piece.size() >= (std::size_t{1} << 20)) {
+      file.add(piece);
+      piece.clear();
+    }
     if (list.next()) next.push(index);
   }
-  flush();
+  file.add(piece);
   file.put();
   return rows;
 }
@@ -263,7 +250,7 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
     sources.push_back(read_record(record));
     require_alike(sources.front(), sources.back());
   }
-  if (sources.empty()) throw Error("SHARDS", "no record is named", kRecordRemedy);
+  if (sources.empty()) no_record("SHARDS", "no record is named");
   require_whole(sources);
   require_other_files(sources, out);
   MergedTiles merged{.tiles = sources.size(), .verified = true};

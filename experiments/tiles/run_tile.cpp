@@ -11,28 +11,21 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <vector>
 
-#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "core/boxes/block.h"
-#include "core/scene/scene.h"
-#include "experiments/record/tables.h"
-#include "experiments/system/text_table.h"
 
 namespace farcull {
-
-// The sample holds the triangles whose hashed numbers end in a certain number of zero bits. That
-// number grows by one each time the sample becomes too large. So the sample depends neither on the
-// parts in which the scene is read nor on chance.
-
 namespace {
 
 constexpr std::size_t kSample = 65536;
 
+// The sample holds the triangles whose hashed numbers end in a certain number of zero bits. That
+// number grows by one each time the sample becomes too large. So the sample depends neither on the
+// parts in which the scene is read nor on chance.
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
@@ -44,9 +37,8 @@ class Sampler {
       std::erase_if(sample_, [&](const auto& one) { return (one.first & mask_) != 0; });
     }
   }
-  std::vector<Box> take() {
+  std::vector<Box> boxes() const {
     std::vector<Box> out;
-    out.reserve(sample_.size());
     for (const auto& [hash, box] : sample_) out.push_back(box);
     return out;
   }
@@ -92,76 +84,10 @@ class Loads {
   std::vector<std::int64_t> step_;
 };
 
-}  // namespace
-
-Fnv1a Census::begun_hash() const {
-  Fnv1a hash;
-  hash.add(objects);
-  for (const auto& [word, times] : sizes) {
-    for (std::uint64_t k = 0; k < times; ++k) hash.add(word);
-  }
-  return hash;
-}
-
-std::uint64_t size_word(const Object& object) {
-  return object.triangle_count | std::uint64_t{object.self} << 32;
-}
-
-Census take_census(const SceneSource& source, double clearance, bool names) {
-  Census out;
-  out.clearance = clearance;
-  Sampler sampler;
-  out.ignored = source([&](Scene& part) {
-    out.name = part.name;
-    out.objects += part.objects.size();
-    for (const Object& object : part.objects) {
-      out.self_objects += object.self;
-      const std::uint64_t word = size_word(object);
-      if (out.sizes.empty() || out.sizes.back().first != word) out.sizes.emplace_back(word, 0);
-      ++out.sizes.back().second;
-      if (names) out.names.push_back(object.name);
-    }
-    const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    for (std::uint32_t t = 0; t < count; ++t) sampler.add(out.triangles++, box_of(part, t));
-  });
-  out.sample = sampler.take();
-  return out;
-}
-
-Scene names_of(const Census& census) {
-  Scene out;
-  out.name = census.name;
-  out.ignored = census.ignored;
-  for (const std::string& name : census.names) out.objects.push_back({.name = name});
-  return out;
-}
-
-Cuts choose_cuts(const Census& census, std::size_t tiles) {
-  Cuts best{.axis = 0, .at = std::vector<double>(tiles - 1, 0)};
-  if (census.sample.empty()) return best;
-  auto least = std::pair(std::numeric_limits<std::uint64_t>::max(), std::uint64_t{0});
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> places;
-    for (const Box& box : census.sample) places.push_back(box.lo[axis]);
-    std::sort(places.begin(), places.end());
-    Cuts cuts{.axis = axis, .at = {}};
-    for (std::size_t k = 1; k < tiles; ++k) cuts.at.push_back(places[places.size() * k / tiles]);
-    Loads loads(cuts, census.clearance);
-    for (const Box& box : census.sample) loads.add(box);
-    if (const auto load = loads.most_and_all(); load < least) {
-      least = load;
-      best = std::move(cuts);
-    }
-  }
-  return best;
-}
-
-namespace {
-
-// Vertices get new numbers part by part, since no two parts share a vertex.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, see plan_pairs()
 
+// Vertices get new numbers part by part, since no two parts share a vertex.
 class Gathering {
  public:
   Gathering(const Census& census, const Tile& tile)
@@ -180,7 +106,7 @@ class Gathering {
   }
 
   TileScene take() {
-    if (run_ != census_.sizes.size()) changed();
+    if (series_ != census_.sizes.size()) changed();
     out_.hash = hash_.hex();
     out_.faces_hash = faces_.hex();
     return std::move(out_);
@@ -198,10 +124,11 @@ class Gathering {
   // The hash begins with the sizes of all objects at the first reading (begun_hash()), so this
   // reading must find the same sizes.
   void require_known(const Object& object) {
-    if (run_ == census_.sizes.size() || census_.sizes[run_].first != size_word(object)) changed();
-    if (++of_run_ < census_.sizes[run_].second) return;
-    ++run_;
-    of_run_ = 0;
+    if (series_ == census_.sizes.size() || census_.sizes[series_].first != size_word(object))
+      changed();
+    if (++of_series_ < census_.sizes[series_].second) return;
+    ++series_;
+    of_series_ = 0;
   }
 
   void add(const Scene& part, const Object& object) {
@@ -252,14 +179,14 @@ class Gathering {
   Tile tile_;
   Fnv1a hash_, faces_;
   TileScene out_;
-  std::size_t run_ = 0;       // index in census_.sizes of the next object's run
-  std::uint64_t of_run_ = 0;  // objects before the next one in its run
+  std::size_t series_ = 0;       // index in census_.sizes of the series of the next object
+  std::uint64_t of_series_ = 0;  // objects of that series before the next object
   std::uint64_t objects_ = 0;
   std::vector<std::uint32_t> vertex_;  // by vertex of the part: its number in the tile, or kNone
 };
 
-// Renumbers pairs of objects of the whole scene for the part. Leaves out pairs with an object
-// outside the part: this tile has none of their triangle pairs.
+// The pairs of objects with the numbers that objects have in the part. Leaves out pairs with an
+// object outside the part, since this tile has none of their triangle pairs.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -274,7 +201,112 @@ std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const List
   return out;
 }
 
+using Json = nlohmann::ordered_json;
+
+// The largest resident memory of this process so far.
+double peak_memory_mib() {
+  struct rusage usage = {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+}
+
+std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
+
+// Null if the tile has no end on this side.
+Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
+
+// A text that identifies the ignored pairs; it is the same for all tiles. It hashes the numbers of
+// objects, since two objects may have the same name.
+std::string ignored_text(const std::vector<ObjectPair>& ignored) {
+  if (ignored.empty()) return "";
+  Fnv1a hash;
+  for (const ObjectPair& pair : ignored) {
+    hash.add(std::uint64_t{pair.a});
+    hash.add(std::uint64_t{pair.b});
+  }
+  return fmt::format("{}, {}", counted(ignored.size(), "pair", "pairs"), hash.hex());
+}
+
+// Writes a triangle of the part with its numbers in the whole scene.
+void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
+              std::uint32_t triangle, Json& place) {
+  place["object"] = part.numbers.objects[owner[triangle]];
+  place["triangle"] = part.numbers.triangles[triangle];
+}
+
+Json list_json(const TileList& list) {
+  Json kinds = Json::array();
+  for (const ContactKind kind : list.columns.kinds) kinds.push_back(std::string(name_of(kind)));
+  return {{"file", list.file},
+          {"columns", list.text.substr(0, list.text.find('\n'))},
+          {"kinds", kinds},
+          {"rows", std::ranges::count(list.text, '\n') - 1},
+          {"sha256", sha256(list.text)}};
+}
+
 }  // namespace
+
+Fnv1a Census::begun_hash() const {
+  Fnv1a hash;
+  hash.add(objects);
+  for (const auto& [word, times] : sizes) {
+    for (std::uint64_t k = 0; k < times; ++k) hash.add(word);
+  }
+  return hash;
+}
+
+std::uint64_t size_word(const Object& object) {
+  return object.triangle_count | std::uint64_t{object.self} << 32;
+}
+
+Census take_census(const SceneSource& source, double clearance, bool names) {
+  Census out;
+  out.clearance = clearance;
+  Sampler sampler;
+  out.ignored = source([&](Scene& part) {
+    out.name = part.name;
+    out.objects += part.objects.size();
+    for (const Object& object : part.objects) {
+      out.self_objects += object.self;
+      const std::uint64_t word = size_word(object);
+      if (out.sizes.empty() || out.sizes.back().first != word) out.sizes.emplace_back(word, 0);
+      ++out.sizes.back().second;
+      if (names) out.names.push_back(object.name);
+    }
+    const auto count = static_cast<std::uint32_t>(part.triangles.size());
+    for (std::uint32_t t = 0; t < count; ++t) sampler.add(out.triangles++, box_of(part, t));
+  });
+  out.sample = sampler.boxes();
+  return out;
+}
+
+Scene names_of(const Census& census) {
+  Scene out;
+  out.name = census.name;
+  out.ignored = census.ignored;
+  for (const std::string& name : census.names) out.objects.push_back({.name = name});
+  return out;
+}
+
+Cuts choose_cuts(const Census& census, std::size_t tiles) {
+  Cuts best{.axis = 0, .at = std::vector<double>(tiles - 1, 0)};
+  if (census.sample.empty()) return best;
+  auto least = std::pair(std::numeric_limits<std::uint64_t>::max(), std::uint64_t{0});
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> places;
+    for (const Box& box : census.sample) places.push_back(box.lo[axis]);
+    std::sort(places.begin(), places.end());
+    Cuts cuts{.axis = axis, .at = {}};
+    for (std::size_t k = 1; k < tiles; ++k) cuts.at.push_back(places[places.size() * k / tiles]);
+    Loads loads(cuts, census.clearance);
+    for (const Box& box : census.sample) loads.add(box);
+    if (const auto load = loads.most_and_all(); load < least) {
+      least = load;
+      best = std::move(cuts);
+    }
+  }
+  return best;
+}
 
 std::size_t parse_tiles(const std::string& text) {
   const std::optional<std::size_t> n = parse_number<std::size_t>(text);
@@ -320,13 +352,9 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
     throw std::logic_error("run_tile: a tile is of boxes, without a limit");
   const Stopwatch reading;
   if (progress) progress("reading the scene for the cuts");
-  TileRun out{.number = question.number,
-              .census = take_census(source, question.options.clearance,
-                                    static_cast<bool>(question.ignored)),
-              .cuts = {},
-              .tile = {},
-              .part = {},
-              .record = {}};
+  TileRun out;
+  out.number = question.number;
+  out.census = take_census(source, question.options.clearance, static_cast<bool>(question.ignored));
   out.ignored = out.census.ignored;
   if (question.ignored)
     out.ignored = in_order(question.ignored(names_of(out.census)), out.census.ignored);
@@ -356,53 +384,7 @@ std::string tile_list(const TileRun& run, PairColumns columns) {
          pairs_rows(run.part.scene, run.record, "", columns);
 }
 
-double peak_memory_mib() {
-  struct rusage usage = {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
-}
-
 // ---- what a run on a tile, and a plan of tiles, print and record ----
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
-
-// Null if the tile has no end on this side.
-Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
-
-// Identifies the ignored pairs by a text that is the same for all tiles. It hashes numbers of
-// objects, not names: two objects may have the same name, and scene_hash() leaves names out.
-std::string ignored_text(const std::vector<ObjectPair>& ignored) {
-  if (ignored.empty()) return "";
-  Fnv1a hash;
-  for (const ObjectPair& pair : ignored) {
-    hash.add(std::uint64_t{pair.a});
-    hash.add(std::uint64_t{pair.b});
-  }
-  return fmt::format("{}, {}", counted(ignored.size(), "pair", "pairs"), hash.hex());
-}
-
-// Writes a triangle of the part with its numbers in the whole scene.
-void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
-              std::uint32_t triangle, Json& place) {
-  place["object"] = part.numbers.objects[owner[triangle]];
-  place["triangle"] = part.numbers.triangles[triangle];
-}
-
-Json list_json(const TileList& list) {
-  Json kinds = Json::array();
-  for (const ContactKind kind : list.columns.kinds) kinds.push_back(std::string(name_of(kind)));
-  return {{"file", list.file},
-          {"columns", list.text.substr(0, list.text.find('\n'))},
-          {"kinds", kinds},
-          {"rows", std::ranges::count(list.text, '\n') - 1},
-          {"sha256", sha256(list.text)}};
-}
-
-}  // namespace
 
 std::string interval_text(const Tile& tile) {
   const bool first = tile.from == -HUGE_VAL, last = tile.to == HUGE_VAL;

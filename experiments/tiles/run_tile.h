@@ -2,21 +2,14 @@
 // work of `farcull merge`. docs/tiles.md has the proof that each pair belongs to one tile.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/bytes.h"
-#include "core/base/stage.h"
-#include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -35,7 +28,7 @@ namespace farcull {
 using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 
 /// The result of reading all parts. Memory: the boxes of at most 65,536 triangles, 16 bytes for
-/// each object whose number of triangles differs from that of the object before, and the ignored
+/// each object whose number of triangles is not that of the object before it, and the ignored
 /// pairs.
 struct Census {
   std::string name;
@@ -46,7 +39,7 @@ struct Census {
   /// Boxes of all triangles if there are at most 65,536; else of a part of them, chosen by a fixed
   /// hash of the triangles' numbers. So the same scene gives the same sample everywhere.
   std::vector<Box> sample;
-  /// For each run of consecutive objects with equal size_word(): the word, and how many objects.
+  /// For each series of consecutive objects with equal size_word(): the word, and how many objects.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> sizes;
 
   /// The state of scene_hash() just before it hashes the coordinates.
@@ -71,9 +64,9 @@ struct Cuts {
 };
 
 /// Cuts for this many tiles, by a fixed rule. On each axis, quantiles of the lower ends of the
-/// sample's boxes serve as cuts. The chosen axis is the one whose fullest tile meets the fewest
-/// boxes of the sample; among equals, the one with the smallest sum over all tiles, then the first.
-/// Only time and memory depend on the cuts. Precondition: tiles >= 1.
+/// sample's boxes serve as cuts. The axis whose fullest tile meets the fewest boxes of the sample
+/// is chosen; among equal axes, the one with the smallest sum over all tiles, then the first. Only
+/// time and memory depend on the cuts. Precondition: tiles >= 1.
 Cuts choose_cuts(const Census& census, std::size_t tiles);
 
 /// "x from 1.5 to below 3".
@@ -124,8 +117,8 @@ struct TileRun {
   Cuts cuts;
   Tile tile;
   TileScene part;  // its scene is named after the whole scene and the tile
-  Record record;   // of the part; its candidates and pairs are those that belong to the tile. The
-                   // accounting is about all pairs of the part, whichever tile they belong to
+  Record record;   // of the part; its candidates and pairs are those that belong to the tile, but
+                   // its accounting is about all pairs of the part
   std::uint64_t elsewhere = 0;           // candidates that belong to other tiles
   double read_ms = 0;                    // of both readings of the scene
   std::vector<ObjectPair> ignored = {};  // pairs of the whole scene: its own and the question's
@@ -158,9 +151,6 @@ NothingToTest nothing_to_test(const Census& census);
 
 /// The lines for people: which tile it is, and which pairs the run does not cover.
 std::string tile_lines(const TileRun& run);
-
-/// The largest resident memory of this process so far, MiB.
-double peak_memory_mib();
 
 // Joins the results of runs on all tiles of a scene.
 

@@ -120,7 +120,7 @@ inline std::string difference(const std::string& a, const std::string& b) {
     for (std::size_t i = 0; i < one.rows.size(); ++i) {
       const Row &x = one.rows[i], &y = two.rows[i];
       if (x.position != y.position || x.point != y.point ||
-          x.measurement.counts->dump() != y.measurement.counts->dump() ||
+          x.measurement.counts.dump() != y.measurement.counts.dump() ||
           x.measurement.device != y.measurement.device ||
           x.measurement.left_out != y.measurement.left_out)
         return name + ": row " + std::to_string(i);

@@ -83,8 +83,8 @@ double coverage(int n, int k) {
 
 TEST(Statistics, BootstrapEndsWhereCombinatoricsPutThem) {
   for (const int n : {3, 5, 7, 9, 15}) {
-    const Estimate e = median_estimate(up_to(n));
-    EXPECT_EQ(e.value, (n + 1) / 2) << n;
+    const Spread e = spread_of(up_to(n));
+    EXPECT_EQ(e.median, (n + 1) / 2) << n;
     EXPECT_EQ(e.low, lower_rank(n)) << n;
     EXPECT_EQ(e.high, n + 1 - lower_rank(n)) << n;
     EXPECT_EQ(e.n, static_cast<std::size_t>(n));
@@ -101,23 +101,23 @@ TEST(Statistics, NineRunsAreTheFewestOddNumberThatGives95PerCent) {
 
 TEST(Statistics, TheSameValuesInAnyOrderGiveTheSameInterval) {
   std::vector<double> values = {4, 1.5, 2, 9, 3, 3.5, 8};
-  const Estimate first = median_estimate(values);
+  const Spread first = spread_of(values);
   std::ranges::reverse(values);
-  const Estimate again = median_estimate(values);
+  const Spread again = spread_of(values);
   EXPECT_EQ(first.low, again.low);
   EXPECT_EQ(first.high, again.high);
   // The twin: another value, another interval.
   values[0] = 0.5;
   values[1] = 0.6;
-  EXPECT_NE(median_estimate(values).low, first.low);
+  EXPECT_NE(spread_of(values).low, first.low);
 }
 
 TEST(Statistics, FewValues) {
-  EXPECT_EQ(median_estimate({}).n, 0u);
-  const Estimate one = median_estimate({7});
+  EXPECT_EQ(spread_of({}).n, 0u);
+  const Spread one = spread_of({7});
   EXPECT_EQ(one.low, 7);
   EXPECT_EQ(one.high, 7);
-  EXPECT_EQ(median_estimate({1, 3}).value, 2);
+  EXPECT_EQ(spread_of({1, 3}).median, 2);
   EXPECT_EQ(middle({4, 1, 2, 9}), 3);
   EXPECT_EQ(middle({}), 0);
 }

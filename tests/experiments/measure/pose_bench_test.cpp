@@ -1,9 +1,9 @@
 // Frames in which an object moves as a whole, by contestants that have to agree.
-#include "experiments/measure/pose_bench.h"
+#include "experiments/measure/bench.h"
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/peers/pose_peer.h"
+#include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"

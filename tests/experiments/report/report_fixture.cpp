@@ -215,7 +215,7 @@ int make(const std::string& folder, const std::string& part) {
           measurement = {};
           measurement.left_out = "the packaged meshes are not there <made-up>";
         }
-        if (!broken && measurement.counts->value("promises", false)) {
+        if (!broken && measurement.counts.value("promises", false)) {
           measurement.counts["missed"] = 1;
           measurement.counts["violations"] = 1;
           broken = true;

@@ -47,8 +47,8 @@ TEST(Store, GivesBackEveryRowWithAllOfItsPoint) {
   EXPECT_EQ(row.position, 1u);
   EXPECT_EQ(row.point, point);
   // Numbers bit for bit, keys in their order.
-  EXPECT_EQ(row.measurement.counts->dump(), measured.counts->dump());
-  EXPECT_EQ(row.measurement.times->dump(), measured.times->dump());
+  EXPECT_EQ(row.measurement.counts.dump(), measured.counts.dump());
+  EXPECT_EQ(row.measurement.times.dump(), measured.times.dump());
   EXPECT_EQ(row.measurement.device, measured.device);
   EXPECT_EQ(row.measurement.left_out, measured.left_out);
   ASSERT_EQ(store.runs().size(), 1u);
@@ -314,7 +314,7 @@ TEST(Counts, AreStoredUnderTheirNamesInOrder) {
   run.drawn = DrawnCounts{.queries = 1, .draws = 2, .queries_saved = 3, .draws_saved = 4};
   run.fragments = FragmentCounts{.elements = 3, .covered = 4, .fragments = 5};
   run.scene_hash = "h";
-  EXPECT_EQ(stored({.counts = run}).counts->dump(),
+  EXPECT_EQ(stored({.counts = run}).counts.dump(),
             R"({"colliding":7,"missed":0,"missed_penetrating":0,"colliding_triangles":0,)"
             R"("missed_triangles":0,"candidates":0,"kept_triangles":0,"kept_objects":0,)"
             R"("triangles":0,"objects":0,"promises":true,"scene_hash":"h","left_by_boxes":0,)"
@@ -328,7 +328,7 @@ TEST(Counts, AreStoredUnderTheirNamesInOrder) {
   EXPECT_TRUE(breaks_promise(revoked));
   run.promises = false;
   EXPECT_FALSE(breaks_promise(stored({.counts = run})));
-  EXPECT_TRUE(stored({.left_out = "why"}).counts->empty());
+  EXPECT_TRUE(stored({.left_out = "why"}).counts.empty());
 }
 
 }  // namespace

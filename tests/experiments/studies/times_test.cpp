@@ -148,7 +148,7 @@ TEST(Times, AreMeasuredAgainAndThenVoidIfOtherProgramsTakeTheProcessors) {
   EXPECT_EQ(runs.size(), 3u * 2 * 2 * kRounds) << "each round is tried three times";
   for (const Row& row : rows_of(folder.folder())) {
     EXPECT_TRUE(is_whole(row.measurement));
-    EXPECT_FALSE(row.measurement.times->contains("total"));
+    EXPECT_FALSE(row.measurement.times.contains("total"));
     for (const Json& round : row.measurement.times["rounds"]) {
       EXPECT_TRUE(round["void"].get<bool>());
       EXPECT_TRUE(round["load"].is_number());
@@ -181,7 +181,7 @@ TEST(Times, AreNotMeasuredBesideAnotherProcess) {
     EXPECT_EQ(runs.size(), 2u) << "a run for the counts of each point";
   }
   for (const Row& row : rows_of(folder.folder())) {
-    EXPECT_TRUE(is_whole(row.measurement) && !row.measurement.times->contains("total"));
+    EXPECT_TRUE(is_whole(row.measurement) && !row.measurement.times.contains("total"));
     EXPECT_TRUE(row.measurement.times["no_times"].get<bool>());
   }
   // The twin: the lock is free again, and --resume measures the times that are missing.

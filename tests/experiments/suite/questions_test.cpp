@@ -1,5 +1,5 @@
 // Questions of a suite beyond pairs, and their labels.
-#include "experiments/suite/questions.h"
+#include "experiments/suite/label.h"
 
 #include "tests/lab/parts.h"
 
