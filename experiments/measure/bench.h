@@ -150,8 +150,8 @@ struct DistanceBenchResult {
   std::optional<std::size_t> fastest_peer;  // into rows; comparable peers only
 };
 
-/// Measures distances between different objects, also if the scene tests one against itself. Throws
-/// Error naming the option for unknown peers, and for a repeat below 1.
+/// Measures distances between different objects only; objects that the scene tests against
+/// themselves are not. Throws Error naming the option if a peer is unknown or the repeat is below 1.
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 

@@ -80,9 +80,9 @@ class Running {
   StoppableCall& call_;
 };
 
-// Waits a moment without the lock of the interpreter; returns whether the call has ended. An
-// interpreter that ends meanwhile ends threads that request its lock. Such a thread must not touch
-// Python, so it waits here for the end of the process.
+// Waits a moment without the lock of the interpreter; returns whether the call has ended. If the
+// interpreter shuts down meanwhile, PyEval_RestoreThread() unwinds this thread. The unwinding would
+// run destructors that touch Python, so the thread sleeps here until the process ends.
 bool ended(StoppableCall& call) {
   PyThreadState* const state = PyEval_SaveThread();
   const bool ended = call.wait_for(kLook);

@@ -157,7 +157,7 @@ struct ClashComparison {
   };
   std::vector<bool> same;        // for each row of the record: whether the file has it
   std::vector<Gone> gone;        // rows of the file that the record lacks
-  std::uint64_t unexamined = 0;  // rows that the record lacks since it leaves their pairs out
+  std::uint64_t unexamined = 0;  // other rows of the file: the record did not examine them
 };
 /// text: the CSV; name: of its file. Throws Error if clash_csv() does not write such a text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,

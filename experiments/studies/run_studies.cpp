@@ -1,4 +1,4 @@
-// The list of studies, the rounds over their open points, and the summary that is printed.
+// Lists the studies, measures in rounds the points that the store lacks, and prints the summary.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -448,7 +448,7 @@ class Runner {
   std::optional<MeasurementContext> lab_;
   std::int64_t run_ = 0;
   Interruptible* interruptible_ = nullptr;
-  std::set<Place> closed_;                   // points that are whole, or failed
+  std::set<Place> closed_;                   // points whose runs are all done, or failed
   std::map<Place, PointResult> first_;       // the first run of each timed point
   std::map<PointKey, Measurement> timed_;    // the times that some study has of a point
   std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of a point

@@ -107,15 +107,20 @@ struct StudiesSummary {
   std::vector<std::string> broken;
 };
 
-/// Measures every point that has no row, or whose row says why nothing was measured, lacks rounds
-/// or has void ones. Takes the times of the same point from another study of the store if there are
-/// any; also the counts, if both studies are `plain`. Holds the TimingLock while points are timed.
-/// After an Error at a point the error is noted and the next point gets a new device; an Error of
-/// the store ends the run. Signals end the program, with a line that says how many points are
-/// stored. Throws Error if the folder cannot be created, if Store or Store::declare() refuses the
-/// store, if another process measures times, if the store has rows of a study and `resume` is not
-/// set, and if it has rows of another commit of farcull, another device, other CPU features, or
-/// another version of a library.
+/// Measures each point that has no row in the store, whose row has a reason in place of a result,
+/// or of which rounds are missing or void. Times of a point that another study of the store
+/// measured are copied; its counts are copied too if both studies are `plain`.
+///
+/// Holds the TimingLock while points are timed. If a point fails, its error is noted, and the next
+/// point gets a new device. A signal ends the program, with a line that says how many points are
+/// stored.
+///
+/// Throws Error if
+/// - the folder cannot be created, or Store or Store::declare() refuses the store;
+/// - another process measures times;
+/// - the store has rows of a study, and `resume` is not set;
+/// - it has rows of another commit of farcull, another device, other CPU features, or another
+///   version of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 
