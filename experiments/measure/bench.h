@@ -151,7 +151,8 @@ struct DistanceBenchResult {
 };
 
 /// Measures distances between different objects only; objects that the scene tests against
-/// themselves are not. Throws Error naming the option if a peer is unknown or the repeat is below 1.
+/// themselves are not. Throws Error naming the option if a peer is unknown or the repeat is
+/// below 1.
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 

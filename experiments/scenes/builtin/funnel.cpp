@@ -36,7 +36,7 @@ struct Ring {
 
 constexpr std::uint32_t kSteps = 64;  // steps of a pleat in Ring::pleat
 constexpr std::uint32_t kRings = 600;
-constexpr double kReachOfCloth = 1.5;  // radius of the last ring; a corner of the square is at sqrt(2)
+constexpr double kReachOfCloth = 1.5;  // radius of the last ring; corners of the square: sqrt(2)
 
 // The mean of cos(swing sin(u)) over u. It is the Bessel function J0, and falls from 1 to 0 if the
 // swing goes from 0 to 2.4.
