@@ -9,8 +9,11 @@
 #define FARCULL_NATIVE_FATTEN_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/canvas/fatten.h"
 #include "core/native/glsl_lanes-inl.h"
@@ -19,18 +22,66 @@
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 
+/// Reads the corners of a triangle into the cache before it is fattened.
+HWY_INLINE void prefetch_corners(const Scene& scene, std::uint32_t item) {
+  for (const std::uint32_t vertex : scene.triangles[item]) hwy::Prefetch(&scene.vertices[vertex]);
+}
+
+/// corners[3 k + i]: coordinate i of corner k of the triangles `items`, one on each lane. If there
+/// are fewer than kWide, the last one is repeated.
+HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, int count,
+                               WideLane (&corners)[9]) {
+  const auto vertex = [&](int lane, int k) HWY_ATTR {
+    return scene.vertices[scene.triangles[items[std::min(lane, count - 1)]][k]].data();
+  };
+#if HWY_TARGET <= HWY_AVX2
+  // Three coordinates are one load; four vertices are transposed at a time.
+  const hn::FixedTag<double, 4> four;
+  const auto three = hn::FirstN(four, 3);
+  using Four = hn::Vec<decltype(four)>;
+  for (int k = 0; k < 3; ++k) {
+    Four part[3][kWide / 4];
+    for (int from = 0; from < kWide; from += 4) {
+      const Four a = hn::MaskedLoad(three, four, vertex(from, k));
+      const Four b = hn::MaskedLoad(three, four, vertex(from + 1, k));
+      const Four c = hn::MaskedLoad(three, four, vertex(from + 2, k));
+      const Four d = hn::MaskedLoad(three, four, vertex(from + 3, k));
+      const Four low_a = hn::InterleaveLower(four, a, b), low_c = hn::InterleaveLower(four, c, d);
+      const Four high_a = hn::InterleaveUpper(four, a, b), high_c = hn::InterleaveUpper(four, c, d);
+      part[0][from / 4] = hn::ConcatLowerLower(four, low_c, low_a);
+      part[1][from / 4] = hn::ConcatLowerLower(four, high_c, high_a);
+      part[2][from / 4] = hn::ConcatUpperUpper(four, low_c, low_a);
+    }
+    for (int i = 0; i < 3; ++i) {
+#if HWY_TARGET <= HWY_AVX3
+      corners[3 * k + i] = WideLane(hn::Combine(WideTag(), part[i][1], part[i][0]));
+#else
+      corners[3 * k + i] = WideLane(part[i][0]);
+#endif
+    }
+  }
+#else
+  HWY_ALIGN double numbers[9][kWide];
+  for (int lane = 0; lane < kWide; ++lane) {
+    for (int k = 0; k < 3; ++k) {
+      const double* const corner = vertex(lane, k);
+      for (int i = 0; i < 3; ++i) numbers[3 * k + i][lane] = corner[i];
+    }
+  }
+  for (int i = 0; i < 9; ++i) corners[i] = WideLane(hn::Load(WideTag(), numbers[i]));
+#endif
+}
+
 /// The images of kWide triangles, by the operations of to_pixel() (core/view/view.h) in their
 /// order.
 struct WidePixels {
   dvec3 p[3];
   WideLane error = 0.0;  // px; the largest of the corners
 
-  HWY_INLINE WidePixels(const Window& window, const double (&corners)[9][kWide]) {
-    const WideTag tag;
+  HWY_INLINE WidePixels(const Window& window, const WideLane (&corners)[9]) {
     for (int k = 0; k < 3; ++k) {
       WideLane d[3], image[3];
-      for (int i = 0; i < 3; ++i)
-        d[i] = WideLane(hn::Load(tag, corners[3 * k + i])) - WideLane(window.origin[i]);
+      for (int i = 0; i < 3; ++i) d[i] = corners[3 * k + i] - WideLane(window.origin[i]);
       for (int row = 0; row < 3; ++row) {
         const WideLane a = WideLane(window.map(row, 0)) * d[0],
                        b = WideLane(window.map(row, 1)) * d[1],
@@ -106,47 +157,60 @@ struct WideOutlines {
 };
 
 HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* out) {
-  const WideTag tag;
-  HWY_ALIGN double numbers[9][kWide];
-  const WideLane* const lane_of[9] = {&of.x0,       &of.x1, &of.y0, &of.y1,   &of.nearest,
-                                      &of.farthest, &of.x,  &of.y,  &of.depth};
-  for (int i = 0; i < 9; ++i) hn::Store(lane_of[i]->v, tag, numbers[i]);
-  for (int lane = 0; lane < lanes; ++lane) {
+  const hn::Rebind<std::int32_t, WideTag> whole;
+  HWY_ALIGN std::int32_t pixels[6][kWide];
+  HWY_ALIGN float depths[3][kWide];
+  const WideLane* const pixel_of[6] = {&of.x0, &of.x1, &of.y0, &of.y1, &of.x, &of.y};
+  for (int i = 0; i < 6; ++i) {
     // If a triangle is not inside, its numbers may be anything. Those that do not fit become 0.
-    const auto pixel = [&](int i) HWY_ATTR {
-      const double a = numbers[i][lane];
-      return static_cast<std::uint16_t>(a >= 0 && a <= 65535 ? a : 0);
-    };
+    const WideLane a = *pixel_of[i];
+    const WideLane fitting = select(a >= 0.0 && a <= WideLane(65535.0), a, 0.0);
+    hn::Store(hn::DemoteTo(whole, fitting.v), whole, pixels[i]);
+  }
+  const WideLane* const depth_of[3] = {&of.nearest, &of.farthest, &of.depth};
+  for (int i = 0; i < 3; ++i)
+    hn::Store(hn::DemoteTo(NarrowTag(), depth_of[i]->v), NarrowTag(), depths[i]);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const auto pixel = [&](int i) { return static_cast<std::uint16_t>(pixels[i][lane]); };
     PixelRange range{pixel(0), pixel(1), pixel(2), pixel(3)};
     if (range.x0 >= range.x1) range.y1 = range.y0;
     out[lane] = {.range = range,
-                 .nearest = static_cast<float>(numbers[4][lane]),
-                 .farthest = static_cast<float>(numbers[5][lane]),
-                 .x = pixel(6),
-                 .y = pixel(7),
-                 .depth = static_cast<float>(numbers[8][lane])};
+                 .nearest = depths[0][lane],
+                 .farthest = depths[1][lane],
+                 .x = pixel(4),
+                 .y = pixel(5),
+                 .depth = depths[2][lane]};
+  }
+}
+
+/// Stores kWide proxies, each 28 floats: those of `found`, one on each lane.
+HWY_INLINE void store_proxies(const WideLane (&found)[28], int lanes, Proxy* out) {
+  static_assert(sizeof(Proxy) == 28 * sizeof(float));
+  HWY_ALIGN float four[7][kWide][4];
+  const auto narrow = [&](int i) HWY_ATTR { return hn::DemoteTo(NarrowTag(), found[i].v); };
+  for (int i = 0; i < 7; ++i) {
+    hn::StoreInterleaved4(narrow(4 * i), narrow(4 * i + 1), narrow(4 * i + 2), narrow(4 * i + 3),
+                          NarrowTag(), four[i][0]);
+  }
+  for (int lane = 0; lane < lanes; ++lane) {
+    char* const proxy = reinterpret_cast<char*>(&out[lane]);
+    for (int i = 0; i < 7; ++i) std::memcpy(proxy + 16 * i, four[i][lane], 16);
   }
 }
 
 /// Does Fattener::fatten_inside (core/canvas/fatten.h) with this Fit.
 template <class Fit>
 HWY_INLINE void fatten_batch(const FattenBatch& batch) {
-  const WideTag tag;
-  HWY_ALIGN double corners[9][kWide];
-  HWY_ALIGN float numbers[28][kWide];
   HWY_ALIGN double in[kWide];
   for (std::size_t from = 0; from < batch.count; from += kWide) {
     const int lanes = static_cast<int>(std::min<std::size_t>(kWide, batch.count - from));
-    for (int lane = 0; lane < kWide; ++lane) {
-      const auto& triangle = batch.scene->triangles[batch.items[from + std::min(lane, lanes - 1)]];
-      for (int k = 0; k < 3; ++k) {
-        const Vec3& corner = batch.scene->vertices[triangle[k]];
-        for (int i = 0; i < 3; ++i) corners[3 * k + i][lane] = corner[i];
-      }
-    }
+    WideLane corners[9];
+    gather_corners(*batch.scene, batch.items + from, lanes, corners);
+    for (std::size_t i = from + kWide; i < std::min(from + 2 * kWide, batch.count); ++i)
+      prefetch_corners(*batch.scene, batch.items[i]);
     const WidePixels pixels(*batch.window, corners);
     const WideBool inside = pixels.inside(*batch.window);
-    hn::Store(select(inside, 1.0, 0.0).v, tag, in);
+    hn::Store(select(inside, 1.0, 0.0).v, WideTag(), in);
     for (int lane = 0; lane < lanes; ++lane) batch.done[from + lane] = in[lane] != 0;
     if (batch.outlines != nullptr) {
       store_outlines(WideOutlines::of(batch, pixels, Fit()), lanes, batch.outlines + from);
@@ -155,13 +219,7 @@ HWY_INLINE void fatten_batch(const FattenBatch& batch) {
     WideLane found[28];
     Fit::rectangle(pixels.p, batch.radius, batch.bounds.x, batch.bounds.y, found);
     Fit::solid(pixels.p, batch.radius, found + 8);
-    for (int i = 0; i < 28; ++i)
-      hn::Store(hn::DemoteTo(NarrowTag(), found[i].v), NarrowTag(), numbers[i]);
-    for (int lane = 0; lane < lanes; ++lane) {
-      Proxy& proxy = batch.out[from + lane];
-      for (int i = 0; i < 8; ++i) proxy.corners[i] = numbers[i][lane];
-      for (int i = 0; i < 20; ++i) proxy.solid[i / 4][i % 4] = numbers[8 + i][lane];
-    }
+    store_proxies(found, lanes, batch.out + from);
   }
 }
 

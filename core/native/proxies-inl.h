@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/native/canvas.h"
-#include "core/native/glsl_lanes-inl.h"
+#include "core/native/fatten-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
@@ -215,8 +215,6 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   // not be followed: the depth map is monotone, so no depth along them changes it either.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
-  const vec4 s0 = uniform(s[0]), s1 = uniform(s[1]), s2 = uniform(s[2]), s3 = uniform(s[3]),
-             s4 = uniform(s[4]);
   const Plain half_width = 0.5f * static_cast<Plain>(job.width);
   const Plain half_height = 0.5f * static_cast<Plain>(job.height);
   const Lane last_x(static_cast<Plain>(range.x1) - 0.5f - half_width);
@@ -232,8 +230,10 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
       covered = covered && (verb == Verb::store ? bound < old : bound >= old);
     }
     if (!any(covered)) return false;
+    // The solid is read here, since most blocks end above and twenty vectors fill all registers.
     Lane entry, exit;
-    covered = covered && Kernel::interval({cx, cy}, s0, s1, s2, s3, s4, entry, exit);
+    covered = covered && Kernel::interval({cx, cy}, uniform(s[0]), uniform(s[1]), uniform(s[2]),
+                                          uniform(s[3]), uniform(s[4]), entry, exit);
     return take_fragments(job, verb, covered, verb == Verb::store ? entry : exit, at, y1 - y);
   };
   // Many blocks in a row are tested against the edges together.
@@ -313,6 +313,9 @@ class WaitingProxies {
       : job_(job), verb_(verb), asked_(verb == Verb::ask && job.output == NativeOutput::run) {}
 
   HWY_INLINE void add(const Draw& draw) {
+    const Drawables& from = *job_.drawables;
+    if (from.fit != nullptr && !(from.sources[draw.element] & kFitted))
+      prefetch_corners(*from.batch.scene, from.sources[draw.element]);
     draws_[count_++] = draw;
     if (count_ == kMost) draw_all();
   }
@@ -362,6 +365,29 @@ class WaitingProxies {
 struct DrawRun {
   std::uint32_t first, count;
 };
+/// Reads into the cache what the runs after `now` need. Sorted runs lie anywhere in the memory, and
+/// each step needs what the one before it has read.
+HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& runs,
+                              std::size_t now) {
+  const Drawables& from = *job.drawables;
+  const auto for_elements = [&](std::size_t run, const auto& prefetch) HWY_ATTR {
+    if (run >= runs.size()) return;
+    for (std::uint32_t d = runs[run].first; d < runs[run].first + runs[run].count; d += 2)
+      if (job.draws[d].element != kEverywhere) prefetch(job.draws[d].element);
+  };
+  if (now + 3 < runs.size()) {
+    hwy::Prefetch(&job.draws[runs[now + 3].first]);
+    hwy::Prefetch(&job.draws[runs[now + 3].first + runs[now + 3].count / 2]);
+  }
+  for_elements(now + 2, [&](std::uint32_t element) HWY_ATTR {
+    hwy::Prefetch(&job.outlines[element]);
+    if (from.fit != nullptr) hwy::Prefetch(&from.sources[element]);
+  });
+  for_elements(now + 1, [&](std::uint32_t element) HWY_ATTR {
+    if (from.fit != nullptr && !(from.sources[element] & kFitted))
+      hwy::Prefetch(&from.batch.scene->triangles[from.sources[element]]);
+  });
+}
 /// Cuts the draws of a store step into runs and sorts these, the nearest first. Any order leaves
 /// the same depths; in this one, most draws that lie behind others change nothing. Leaves out runs
 /// that do not reach the job's rows.
@@ -412,6 +438,7 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
     }
     WaitingProxies<Kernel> waiting(job, step.verb);
     for (const DrawRun& some : runs) {
+      if (runs.size() > 1) prefetch_runs(job, runs, static_cast<std::size_t>(&some - runs.data()));
       for (std::uint32_t d = some.first; d < some.first + some.count; ++d) {
         const Draw& draw = job.draws[d];
         if (asked && already_seen(job.seen, draw.slot)) continue;
