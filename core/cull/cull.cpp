@@ -271,7 +271,7 @@ class Culling {
     drawables_ = fatten(scene_, items_.items, *place_->window, settings_.fattener, report.radius_px,
                         counts, std::move(drawables_), reach);
     canvas_.begin(*place_->window, drawables_);
-    items_.mark_undrawable(drawables_);
+    items_.take_drawables(drawables_);
     stage.out = drawables_.elements();
     stage.n = counts.undrawable;
     finish(stage);

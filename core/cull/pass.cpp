@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/base/stage.h"
+
 namespace farcull {
 namespace {
 
@@ -27,8 +29,6 @@ struct PassQuestion {
   const Level& level;
 
   std::uint8_t bits(std::size_t item) const { return state.bits[visit.items[item]]; }
-  bool asks(std::size_t item) const { return rule.asks[ask == kL][bits(item)]; }
-  bool stores(std::size_t item) const { return rule.stores[ask == kL][bits(item)]; }
   std::uint32_t elements(std::size_t item) const {
     return drawables.first[item + 1] - drawables.first[item];
   }
@@ -46,6 +46,7 @@ class PassBuilder {
   explicit PassBuilder(const PassQuestion& of) : of_(of) {
     pass_.draws.reserve(2 * of.drawables.elements());
     asked_.reserve(of.visit.items.size());
+    grouped_ = of.level.group != nullptr;
     for_owners(of.visit, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
       const bool last = of.ask == kF ? to == of.visit.items.size() : from == 0;
@@ -55,50 +56,55 @@ class PassBuilder {
       pass_.draws.resize(pass_.steps.back().first);
       pass_.steps.pop_back();
     }
-    pass_.slots = static_cast<std::uint32_t>(slot_begin_.size());
-    slot_begin_.push_back(asked_.size());
+    pass_.slots = static_cast<std::uint32_t>(grouped_ ? slot_begin_.size() : asked_.size());
+    slot_begin_.push_back(static_cast<std::uint32_t>(asked_.size()));
   }
 
   Pass& pass() { return pass_; }
   PassCost cost() const { return {pass_.draws.size(), pass_.slots}; }
 
-  // Calls clear(triangle) for all that the pass did not see.
+  // Calls clear(item) for all that the pass did not see.
   template <class Clear>
   void for_unseen(const std::vector<std::uint8_t>& seen, const Clear& clear) const {
-    for (const std::uint32_t item : undrawn_) clear(of_.visit.items[item]);
+    for (const std::uint32_t item : undrawn_) clear(item);
     for (std::size_t slot = 0; slot < pass_.slots; ++slot) {
       if (seen[slot]) continue;
-      for (std::size_t i = slot_begin_[slot]; i < slot_begin_[slot + 1]; ++i)
-        clear(of_.visit.items[asked_[i]]);
+      const std::size_t from = grouped_ ? slot_begin_[slot] : slot;
+      const std::size_t to = grouped_ ? slot_begin_[slot + 1] : slot + 1;
+      for (std::size_t i = from; i < to; ++i) clear(asked_[i]);
     }
   }
 
  private:
   void ask_owner(std::size_t from, std::size_t to) {
     const Step step{Verb::ask, static_cast<std::uint32_t>(pass_.draws.size()), 0};
+    const bool(&asks)[4] = of_.rule.asks[of_.ask == kL];
     std::uint32_t group = 0;
     bool first = true;
     for (std::size_t i = from; i < to; ++i) {
-      if (of_.undrawable(i) || !of_.asks(i)) continue;
+      if (!asks[of_.bits(i)] || of_.undrawable(i)) continue;
       const auto item = static_cast<std::uint32_t>(i);
       if (!anything_stored_ || of_.elements(i) == 0) {
         undrawn_.push_back(item);
         continue;
       }
-      const std::uint32_t its = of_.group(i);
-      if (first || its != group) slot_begin_.push_back(asked_.size());
-      first = false;
-      group = its;
+      if (grouped_) {
+        const std::uint32_t its = of_.group(i);
+        if (first || its != group) slot_begin_.push_back(static_cast<std::uint32_t>(asked_.size()));
+        first = false;
+        group = its;
+      }
       asked_.push_back(item);
-      add_elements(i, static_cast<std::uint32_t>(slot_begin_.size() - 1));
+      add_elements(i, static_cast<std::uint32_t>((grouped_ ? slot_begin_ : asked_).size() - 1));
     }
     push(step);
   }
 
   void store_owner(std::size_t from, std::size_t to) {
     const Step step{Verb::store, static_cast<std::uint32_t>(pass_.draws.size()), 0};
+    const bool(&stores)[4] = of_.rule.stores[of_.ask == kL];
     for (std::size_t i = from; i < to; ++i) {
-      if (!of_.stores(i)) continue;
+      if (!stores[of_.bits(i)]) continue;
       if (of_.undrawable(i)) {
         pass_.draws.push_back({kEverywhere, 0});
       } else {
@@ -109,8 +115,8 @@ class PassBuilder {
   }
 
   void add_elements(std::size_t item, std::uint32_t slot) {
-    const std::vector<std::uint32_t>& first = of_.drawables.first;
-    for (std::uint32_t e = first[item]; e < first[item + 1]; ++e) pass_.draws.push_back({e, slot});
+    const std::uint32_t* const first = of_.drawables.first.data() + item;
+    for (std::uint32_t e = first[0]; e < first[1]; ++e) pass_.draws.push_back({e, slot});
   }
 
   void push(Step step) {
@@ -121,9 +127,10 @@ class PassBuilder {
   }
 
   const PassQuestion& of_;
-  std::vector<std::uint32_t> undrawn_;   // items that get the bit without being drawn
-  std::vector<std::uint32_t> asked_;     // items, slot after slot
-  std::vector<std::size_t> slot_begin_;  // per slot: its first index in asked_
+  bool grouped_ = false;                   // false: a slot is one item
+  std::vector<std::uint32_t> undrawn_;     // items that get the bit without being drawn
+  std::vector<std::uint32_t> asked_;       // items, slot after slot
+  std::vector<std::uint32_t> slot_begin_;  // per slot: its first index in asked_, if grouped
   bool anything_stored_ = false;
   Pass pass_;
 };
@@ -153,13 +160,29 @@ VisitItems::VisitItems(const CullState& state) : items(state.live) {
   owner_begin.push_back(static_cast<std::uint32_t>(items.size()));
 }
 
-void VisitItems::mark_undrawable(const Drawables& drawables) {
-  if (drawables.undrawable.empty()) return;
-  undrawable.resize(items.size());
+void VisitItems::take_drawables(const Drawables& drawables) {
+  if (!drawables.undrawable.empty()) undrawable.resize(items.size());
   for (const std::uint32_t item : drawables.undrawable) undrawable[item] = 1;
+  open.assign(owner_begin.size() - 1, {});
+  const std::uint32_t* const first = drawables.first.data();
+  for (std::size_t o = 0; o < open.size(); ++o) {
+    const std::uint32_t from = owner_begin[o], to = owner_begin[o + 1];
+    open[o].elements = first[to] - first[from];
+    for (std::uint32_t i = from; i < to; ++i) open[o].drawn += first[i + 1] > first[i];
+    for (std::uint32_t i = from; i < to && !undrawable.empty(); ++i)
+      open[o].undrawable += undrawable[i];
+  }
 }
 
-PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& drawables, Bit ask,
+void VisitItems::close(std::uint32_t item, const Drawables& drawables) {
+  const auto after = std::upper_bound(owner_begin.begin(), owner_begin.end(), item);
+  OpenItems& its = open[static_cast<std::size_t>(after - owner_begin.begin() - 1)];
+  const std::uint32_t elements = drawables.first[item + 1] - drawables.first[item];
+  its.elements -= elements;
+  its.drawn -= elements > 0;
+}
+
+PassCost run_pass(CullState& state, VisitItems& items, const Drawables& drawables, Bit ask,
                   const PassRule& rule, const Level& level, bool touching, Canvas& canvas) {
   const PassQuestion question{state, items, drawables, ask, rule, level};
   PassBuilder builder(question);
@@ -167,7 +190,11 @@ PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& dr
   pass.touching = touching;
   const std::vector<std::uint8_t> seen =
       pass.steps.empty() ? std::vector<std::uint8_t>() : canvas.run(pass);
-  builder.for_unseen(seen, [&](std::uint32_t triangle) { state.set(triangle, ask); });
+  builder.for_unseen(seen, [&](std::uint32_t item) {
+    const std::uint32_t triangle = items.items[item];
+    state.set(triangle, ask);
+    if (state.bits[triangle] == kCulled) items.close(item, drawables);
+  });
   return builder.cost();
 }
 
@@ -178,26 +205,27 @@ PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawa
   PassCost cost;            // up to the last query
   std::uint64_t drawn = 0;  // elements so far
   bool anything_stored = false;
+  std::size_t next = ask == kF ? 0 : items.open.size();
   for_owners(items, ask, [&](std::size_t from, std::size_t to) {
-    // No branch for a single item, because a visit counts all its items often.
-    std::uint64_t elements = 0, everywhere = 0, groups = 0, group = UINT64_MAX;
-    for (std::size_t i = from; i < to; ++i) {
-      const std::uint32_t open = of.bits(i) != kCulled;
-      const std::uint64_t its = of.group(i);
-      const bool counts = open * of.elements(i) > 0;
-      elements += open * of.elements(i);
-      groups += counts && its != group;
-      group = counts ? its : group;
+    const OpenItems& open = items.open[ask == kF ? next++ : --next];
+    std::uint64_t groups = level.group ? open.drawn > 0 : open.drawn;
+    if (level.group && level.size != kObjectLevel) {
+      groups = 0;
+      std::uint64_t last = UINT64_MAX;
+      for (std::size_t i = from; i < to; ++i) {
+        if (of.bits(i) == kCulled || of.elements(i) == 0) continue;
+        groups += last != of.group(i);
+        last = of.group(i);
+      }
     }
-    for (std::size_t i = from; i < to && !items.undrawable.empty(); ++i)
-      everywhere += of.undrawable(i) && of.asks(i);
     if (anything_stored) {
       cost.queries += groups;
-      drawn += elements;
-      if (elements > 0) cost.draws = drawn;
+      drawn += open.elements;
+      if (open.elements > 0) cost.draws = drawn;
     }
-    drawn += elements + everywhere;  // plain CULLIDE stores what it asks
-    anything_stored = anything_stored || elements + everywhere > 0;
+    // Plain CULLIDE stores what it asks.
+    drawn += open.elements + open.undrawable;
+    anything_stored = anything_stored || open.elements + open.undrawable > 0;
   });
   return cost;
 }

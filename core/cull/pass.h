@@ -52,17 +52,27 @@ struct CullState {
   void clear_bits();
 };
 
+/// The items of one owner that are not culled.
+struct OpenItems {
+  std::uint64_t elements = 0;
+  std::uint32_t drawn = 0;       // items that have elements
+  std::uint32_t undrawable = 0;  // items beyond the budget; they stay open
+};
+
 /// The triangles that one visit of a view asks and stores.
 struct VisitItems {
   VisitItems() = default;
   /// Takes the live triangles.
   explicit VisitItems(const CullState& state);
-  /// Marks the items that cannot be drawn. Call it when their drawables are made.
-  void mark_undrawable(const Drawables& drawables);
+  /// Marks the items that cannot be drawn, and counts all. Call it when their drawables are made.
+  void take_drawables(const Drawables& drawables);
+  /// Subtracts an item, which has been culled, from the open ones of its owner.
+  void close(std::uint32_t item, const Drawables& drawables);
 
   std::vector<std::uint32_t> items;        // triangles, in the order of the drawables
   std::vector<std::uint32_t> owner_begin;  // index in items per owner with items; then items.size()
   std::vector<std::uint8_t> undrawable;    // per item; empty: none is
+  std::vector<OpenItems> open;             // per owner with items
 };
 
 struct PassCost {
@@ -80,7 +90,7 @@ struct PassCost {
 /// get it without being drawn: triangles without elements in this view, and those asked before
 /// anything is stored. Undrawable ones get no bit and are stored everywhere. Stores that no later
 /// query reads are left out.
-PassCost run_pass(CullState& state, const VisitItems& items, const Drawables& drawables, Bit ask,
+PassCost run_pass(CullState& state, VisitItems& items, const Drawables& drawables, Bit ask,
                   const PassRule& rule, const Level& level, bool touching, Canvas& canvas);
 
 /// The cost of plain CULLIDE's pass on the same live triangles: elements drawn and slots asked.
