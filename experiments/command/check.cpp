@@ -8,27 +8,19 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "experiments/tiles/run_tile.h"
-#include "verify/certificate/certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -259,131 +251,129 @@ void require_number(const std::string& certificate, bool numbers) {
 
 class CheckCommand {
  public:
-  CLI::App* add_to(CLI::App& app);
-  int run();
+  CLI::App* add_to(CLI::App& app) {
+    return add_command(
+        app, "check", "prove or refute a certificate of a run, or a list of pairs",
+        Rows{{"CERTIFICATE", &arguments_.certificate, "",
+              "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
+              "alone"}} +
+            scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
+            Rows{{"--self", &arguments_.self, "",
+                  "every object was tested against itself, as by\nfarcull run --self"},
+                 ignore_row(arguments_.scene.ignore),
+                 {"--pairs", &pairs_, "FILE",
+                  "a list of pairs as farcull run --pairs writes it:\n"
+                  "is it right and complete? Columns are found by their\n"
+                  "names; rows may be in any order. With --tiles: the\n"
+                  "merged list, which must be equal byte for byte"},
+                 {"--clearance", &clearance_, "D",
+                  "the list is of pairs at this distance or less, in\n"
+                  "world units; default 0, or that of the certificate"},
+                 {"--frames", &frames_, "N|A:B",
+                  "check these frames, as of farcull run --frames: with\n"
+                  "a number (%d or %04d) in the name of CERTIFICATE and\n"
+                  "a column `frame` in the list"},
+                 {"--tiles", &tiles_, "N",
+                  "check the certificates of all N tiles of the scene\n(farcull run --tiles), with "
+                  "a number (%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
+                 {"--verified", &arguments_.verified, "",
+                  "the checker that Coq has proved must agree; a build has\nit where Coq is "
+                  "installed "
+                  "(docs/verified.md)"},
+                 {"--json", &json_, "FILE", kJsonHelp}},
+        "Examples:\n"
+        "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
+        "  farcull check c.json two-spheres --pairs pairs.csv\n"
+        "  farcull check two-spheres --pairs pairs.csv\n"
+        "  farcull run two-spheres --clearance 0.01 --certificate d.json\n"
+        "  farcull check d.json two-spheres\n"
+        "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
+        "  farcull check c_%04d.json two-spheres --frames 10\n"
+        "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
+        "  farcull check t%d.json two-tori --tiles 2\n\n"
+        "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
+        "no others; 1: refuted, or not proved, as for another scene; 2: what cannot be read.\n"
+        "Nothing is proved about the run: neither its method nor which pairs it kept. The file of "
+        "a\n"
+        "certificate, and its proof: docs/certificate.md.");
+  }
+  int run() {
+    CheckArguments& to = arguments_;
+    if (to.certificate.empty())
+      throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
+    if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
+    to.pairs = pairs_.value_or("");
+    if (frames_) to.frames = parse_frames(*frames_);
+    if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
+    // The scene may come first, and the certificate last: the text of the file decides.
+    const auto is_certificate = [&](const std::string& path) {
+      const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
+      std::string text(100, ' ');
+      if (std::filesystem::is_regular_file(file))
+        std::ifstream(file).read(text.data(), static_cast<std::streamsize>(text.size()));
+      return text.find("\"farcull-certificate\"") != std::string::npos;
+    };
+    if (!to.scene.names.empty() && !is_certificate(to.certificate) &&
+        is_certificate(to.scene.names.back())) {
+      to.scene.names.insert(to.scene.names.begin(), std::move(to.certificate));
+      to.certificate = std::move(to.scene.names.back());
+      to.scene.names.pop_back();
+    }
+    // If the first of several names is not a mesh, it names a certificate.
+    const bool mesh = has_mesh_extension(to.certificate);
+    if (!pairs_ && mesh) {
+      throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
+                  "name the certificate first, or give a list of pairs with --pairs FILE");
+    }
+    if (!pairs_ && to.scene.names.empty()) {
+      throw Error("SCENE", "is missing after '" + to.certificate + "'",
+                  "name the scene that the certificate is of, or give a list of pairs with --pairs "
+                  "FILE");
+    }
+    if (mesh || to.scene.names.empty())
+      to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
+    if (to.certificate == "-")
+      throw Error("CERTIFICATE", "is not read from standard input", "name a file");
+    check_scene(to.scene.names);
+    if (clearance_) to.clearance = parse_clearance(*clearance_);
+    if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
+      throw Error("--tiles",
+                  "is for certificates of tiles, without --frames, --clearance and --ignore",
+                  "leave it out, or name the certificates of the tiles");
+    }
+    require_number(to.certificate, to.frames || to.tiles);
+    if (to.verified) {
+      const auto refuse = [](const char* reason, const char* remedy) {
+        throw Error("--verified", reason, remedy);
+      };
+      if (to.certificate.empty())
+        refuse("needs a certificate", "make one with farcull run SCENE --certificate FILE");
+      if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
+      if (clearance_)
+        refuse("does not take --clearance", "leave --clearance out: the certificate has it");
+      if (pairs_ && !tiles_)
+        refuse("does not read the list of --pairs",
+               "check twice: with --pairs, then with --verified, which proves the same list");
+    }
+    std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
+    if (!to.certificate.empty()) {
+      for (const std::string& file :
+           numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
+        inputs.push_back({"CERTIFICATE", file});
+    }
+    if (pairs_) inputs.push_back({"--pairs", *pairs_});
+    to.json = checked({.json = json_}, inputs).json.value_or("");
+    if (to.verified && to.json == "-") {
+      throw Error("--verified", "prints lines of its own, which would stand among the JSON",
+                  "write the JSON to a file");
+    }
+    return run_check(to);
+  }
 
  private:
   CheckArguments arguments_;
   Text json_, pairs_, clearance_, frames_, tiles_;
 };
-
-CLI::App* CheckCommand::add_to(CLI::App& app) {
-  return add_command(
-      app, "check", "prove or refute a certificate of a run, or a list of pairs",
-      Rows{{"CERTIFICATE", &arguments_.certificate, "",
-            "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
-            "alone"}} +
-          scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
-          Rows{
-              {"--self", &arguments_.self, "",
-               "every object was tested against itself, as by\nfarcull run --self"},
-              ignore_row(arguments_.scene.ignore),
-              {"--pairs", &pairs_, "FILE",
-               "a list of pairs as farcull run --pairs writes it:\n"
-               "is it right and complete? Columns are found by their\n"
-               "names; rows may be in any order. With --tiles: the\n"
-               "merged list, which must be equal byte for byte"},
-              {"--clearance", &clearance_, "D",
-               "the list is of pairs at this distance or less, in\n"
-               "world units; default 0, or that of the certificate"},
-              {"--frames", &frames_, "N|A:B",
-               "check these frames, as of farcull run --frames: with\n"
-               "a number (%d or %04d) in the name of CERTIFICATE and\n"
-               "a column `frame` in the list"},
-              {"--tiles", &tiles_, "N",
-               "check the certificates of all N tiles of the scene\n(farcull run --tiles), with "
-               "a number (%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
-              {"--verified", &arguments_.verified, "",
-               "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
-               "(docs/verified.md)"},
-              {"--json", &json_, "FILE", kJsonHelp}},
-      "Examples:\n"
-      "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
-      "  farcull check c.json two-spheres --pairs pairs.csv\n"
-      "  farcull check two-spheres --pairs pairs.csv\n"
-      "  farcull run two-spheres --clearance 0.01 --certificate d.json\n"
-      "  farcull check d.json two-spheres\n"
-      "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
-      "  farcull check c_%04d.json two-spheres --frames 10\n"
-      "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
-      "  farcull check t%d.json two-tori --tiles 2\n\n"
-      "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others; 1: refuted, or not proved, as for another scene; 2: what cannot be read.\n"
-      "Nothing is proved about the run: neither its method nor which pairs it kept. The file of a\n"
-      "certificate, and its proof: docs/certificate.md.");
-}
-
-int CheckCommand::run() {
-  CheckArguments& to = arguments_;
-  if (to.certificate.empty())
-    throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
-  if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
-  to.pairs = pairs_.value_or("");
-  if (frames_) to.frames = parse_frames(*frames_);
-  if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-  // The scene may come first, and the certificate last: the text of the file decides.
-  const auto is_certificate = [&](const std::string& path) {
-    const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
-    std::string text(100, ' ');
-    if (std::filesystem::is_regular_file(file))
-      std::ifstream(file).read(text.data(), static_cast<std::streamsize>(text.size()));
-    return text.find("\"farcull-certificate\"") != std::string::npos;
-  };
-  if (!to.scene.names.empty() && !is_certificate(to.certificate) &&
-      is_certificate(to.scene.names.back())) {
-    to.scene.names.insert(to.scene.names.begin(), std::move(to.certificate));
-    to.certificate = std::move(to.scene.names.back());
-    to.scene.names.pop_back();
-  }
-  // If the first of several names is not a mesh, it names a certificate.
-  const bool mesh = has_mesh_extension(to.certificate);
-  if (!pairs_ && mesh) {
-    throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
-                "name the certificate first, or give a list of pairs with --pairs FILE");
-  }
-  if (!pairs_ && to.scene.names.empty()) {
-    throw Error("SCENE", "is missing after '" + to.certificate + "'",
-                "name the scene that the certificate is of, or give a list of pairs with --pairs "
-                "FILE");
-  }
-  if (mesh || to.scene.names.empty())
-    to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
-  if (to.certificate == "-")
-    throw Error("CERTIFICATE", "is not read from standard input", "name a file");
-  check_scene(to.scene.names);
-  if (clearance_) to.clearance = parse_clearance(*clearance_);
-  if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
-    throw Error("--tiles",
-                "is for certificates of tiles, without --frames, --clearance and --ignore",
-                "leave it out, or name the certificates of the tiles");
-  }
-  require_number(to.certificate, to.frames || to.tiles);
-  if (to.verified) {
-    const auto refuse = [](const char* reason, const char* remedy) {
-      throw Error("--verified", reason, remedy);
-    };
-    if (to.certificate.empty())
-      refuse("needs a certificate", "make one with farcull run SCENE --certificate FILE");
-    if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
-    if (clearance_)
-      refuse("does not take --clearance", "leave --clearance out: the certificate has it");
-    if (pairs_ && !tiles_)
-      refuse("does not read the list of --pairs",
-             "check twice: with --pairs, then with --verified, which proves the same list");
-  }
-  std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
-  if (!to.certificate.empty()) {
-    for (const std::string& file : numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
-      inputs.push_back({"CERTIFICATE", file});
-  }
-  if (pairs_) inputs.push_back({"--pairs", *pairs_});
-  to.json = checked({.json = json_}, inputs).json.value_or("");
-  if (to.verified && to.json == "-") {
-    throw Error("--verified", "prints lines of its own, which would stand among the JSON",
-                "write the JSON to a file");
-  }
-  return run_check(to);
-}
 
 }  // namespace
 

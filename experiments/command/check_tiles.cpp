@@ -7,16 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <utility>
 
 #include "core/base/bytes.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
 #include "experiments/command/check.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
 #include "verify/certificate/pair_list.h"

@@ -296,65 +296,63 @@ class DoctorCommand {
   }
   // Returns 0 if every assumption holds on the native canvas and on the chosen device, else 1.
   // Without OpenGL only the native canvas is tested.
-  int run() const;
+  int run() const {
+    const DoctorArguments arguments{.device = device_of(device_),
+                                    .json = checked({.json = json_}, {}).json.value_or("")};
+    const FloatingPointGuard guard;
+    if (!arguments.json.empty()) check_output(arguments.json);
+    if (is_cpu(arguments.device)) return doctor_without_gl(arguments);
+    // A missing device is refused before the probes of the native canvas, which take seconds.
+    const std::vector<GlDevice> devices = GlContext::list_devices();
+    const std::optional<int> chosen = choose(devices, arguments.device);
+    if (!chosen && arguments.device.empty()) {
+      if (arguments.json != "-")
+        print(devices_table(devices, -1) +
+              "no device offers what farcull needs of OpenGL: "
+              "everything runs on the cores of the CPU\n\n");
+      return doctor_without_gl(arguments);
+    }
+    if (arguments.device == "hardware" &&
+        std::ranges::count(devices, arguments.device, &GlDevice::kind) == 0)
+      throw Error("--device", "no GPU was found", "give software or native");
+    // The constructor throws Error if no device fits the option.
+    const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
+    const std::vector<ProbeResult> native = native_probes();
+    const GlInfo& gl = context.info();
+    const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
+    const bool people = arguments.json != "-";
+    if (people)
+      print(native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
+            limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
+
+    const bool terminal = is_terminal(stderr);
+    const Stopwatch probing;
+    const std::vector<ProbeResult> probes =
+        all_probes(context, [terminal](const std::string& assumption) {
+          if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
+        });
+    if (terminal) std::fprintf(stderr, "\r\033[K");
+    const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
+    const bool pass = all_pass(native) && all_pass(probes);
+    if (!arguments.json.empty()) {
+      Json report = {
+          {"native", native_json(native)},
+          {"devices", devices_json(devices)},
+          {"chosen", json_of(chosen)},
+          {"gl", gl_json(gl)},
+          {"limits", limits_json(gl, resolution)},
+          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
+          {"probes", probes_json(probes)},
+          {"verdict_file", verdict.file}};
+      write_report(std::move(report), pass, arguments);
+    }
+    if (people) print(probes_table(probes) + verdict_text(verdict));
+    return pass ? 0 : 1;
+  }
 
  private:
   Text device_, json_;
 };
-
-int DoctorCommand::run() const {
-  const DoctorArguments arguments{.device = device_of(device_),
-                                  .json = checked({.json = json_}, {}).json.value_or("")};
-  const FloatingPointGuard guard;
-  if (!arguments.json.empty()) check_output(arguments.json);
-  if (is_cpu(arguments.device)) return doctor_without_gl(arguments);
-  // A missing device is refused before the probes of the native canvas, which take seconds.
-  const std::vector<GlDevice> devices = GlContext::list_devices();
-  const std::optional<int> chosen = choose(devices, arguments.device);
-  if (!chosen && arguments.device.empty()) {
-    if (arguments.json != "-")
-      print(devices_table(devices, -1) +
-            "no device offers what farcull needs of OpenGL: "
-            "everything runs on the cores of the CPU\n\n");
-    return doctor_without_gl(arguments);
-  }
-  if (arguments.device == "hardware" &&
-      std::ranges::count(devices, arguments.device, &GlDevice::kind) == 0)
-    throw Error("--device", "no GPU was found", "give software or native");
-  // The constructor throws Error if no device fits the option.
-  const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
-  const std::vector<ProbeResult> native = native_probes();
-  const GlInfo& gl = context.info();
-  const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
-  const bool people = arguments.json != "-";
-  if (people)
-    print(native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
-          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
-
-  const bool terminal = is_terminal(stderr);
-  const Stopwatch probing;
-  const std::vector<ProbeResult> probes =
-      all_probes(context, [terminal](const std::string& assumption) {
-        if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
-      });
-  if (terminal) std::fprintf(stderr, "\r\033[K");
-  const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
-  const bool pass = all_pass(native) && all_pass(probes);
-  if (!arguments.json.empty()) {
-    Json report = {
-        {"native", native_json(native)},
-        {"devices", devices_json(devices)},
-        {"chosen", json_of(chosen)},
-        {"gl", gl_json(gl)},
-        {"limits", limits_json(gl, resolution)},
-        {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
-        {"probes", probes_json(probes)},
-        {"verdict_file", verdict.file}};
-    write_report(std::move(report), pass, arguments);
-  }
-  if (people) print(probes_table(probes) + verdict_text(verdict));
-  return pass ? 0 : 1;
-}
 
 }  // namespace
 

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "core/boxes/join.h"
-#include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/system/text_table.h"
 #include "verify/inside.h"

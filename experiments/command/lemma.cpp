@@ -159,54 +159,50 @@ std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double sec
 
 class LemmaCommand {
  public:
-  CLI::App* add_to(CLI::App& experiment);
-  int run();
+  CLI::App* add_to(CLI::App& experiment) {
+    return add_command(
+        experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic",
+        {{"--points", &arguments_.points, "N", "points in all; default 100000"},
+         {"--radius", &arguments_.radius, "RADIUS",
+          "budget, published, or a factor on the budget;\ndefault budget"},
+         {"--canvas", &arguments_.canvas, "native|gl|worst",
+          "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
+          "allow); default gl where\n--device is given or hardware answers, else native"},
+         {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
+         {"--seed", &arguments_.seed, "N", "of the points; default 1"},
+         {"--device", &device_, "DEVICE", kDeviceHelp},
+         {"--json", &arguments_.outputs.json, "FILE", kJsonHelp}},
+        "Examples:\n"
+        "  farcull experiment lemma --points 1000000 --radius budget\n"
+        "  farcull experiment lemma --radius published\n"
+        "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
+        "Exit status 1: a violation at the budget radius or beyond.");
+  }
+  // Prints the rows; writes --json.
+  int run() {
+    LemmaArguments& arguments = arguments_;
+    const Outputs outputs = arguments.outputs = checked(arguments.outputs, {});
+    arguments.device = device_of(device_);
+    TerminalProgress terminal;
+    const Progress progress = terminal.callback();
+    validate(arguments);
+    const RadiusRule rule = parse_radius(arguments.radius);
+    const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
+    LemmaCanvas on(arguments, fattener);
+    const Stopwatch watch;
+    const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
+    const bool guaranteed = !rule.published && rule.factor >= 1;
+    const double seconds = watch.ms() / 1000;
+    terminal.clear();
+    if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
+    if (!outputs.to_stdout()) print(text_of(arguments, on, seconds, result));
+    return guaranteed && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
+  }
 
  private:
   LemmaArguments arguments_;
   Text device_;
 };
-
-CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
-  return add_command(
-      experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic",
-      {{"--points", &arguments_.points, "N", "points in all; default 100000"},
-       {"--radius", &arguments_.radius, "RADIUS",
-        "budget, published, or a factor on the budget;\ndefault budget"},
-       {"--canvas", &arguments_.canvas, "native|gl|worst",
-        "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
-        "allow); default gl where\n--device is given or hardware answers, else native"},
-       {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
-       {"--seed", &arguments_.seed, "N", "of the points; default 1"},
-       {"--device", &device_, "DEVICE", kDeviceHelp},
-       {"--json", &arguments_.outputs.json, "FILE", kJsonHelp}},
-      "Examples:\n"
-      "  farcull experiment lemma --points 1000000 --radius budget\n"
-      "  farcull experiment lemma --radius published\n"
-      "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
-      "Exit status 1: a violation at the budget radius or beyond.");
-}
-
-// Prints the rows; writes --json.
-int LemmaCommand::run() {
-  LemmaArguments& arguments = arguments_;
-  const Outputs outputs = arguments.outputs = checked(arguments.outputs, {});
-  arguments.device = device_of(device_);
-  TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  validate(arguments);
-  const RadiusRule rule = parse_radius(arguments.radius);
-  const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
-  LemmaCanvas on(arguments, fattener);
-  const Stopwatch watch;
-  const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
-  const bool guaranteed = !rule.published && rule.factor >= 1;
-  const double seconds = watch.ms() / 1000;
-  terminal.clear();
-  if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
-  if (!outputs.to_stdout()) print(text_of(arguments, on, seconds, result));
-  return guaranteed && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
-}
 
 }  // namespace
 

@@ -12,16 +12,13 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <utility>
 
 #include "core/base/bytes.h"
-#include "core/base/error.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/fields.h"
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
 #include "experiments/method/run.h"
