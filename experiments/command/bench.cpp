@@ -88,9 +88,26 @@ class BenchCommand {
     Scene scene = read_scene(scene_);
     require_asked(scene, {});
     if (options.self) make_self(scene);
+    const auto refuse_given_with = [&](const std::string& subject) {
+      refuse_given({{"--self", self_},
+                    {"--methods", methods_.has_value()},
+                    {"--device", device_.has_value()}},
+                   "says nothing about " + subject, "leave it or --" + subject + " out");
+    };
     if (distances_) {
       require_nothing_ignored(scene, "farcull bench --distances");
-      const DistanceBenchOptions of_distances = parse_distances(options);
+      DistanceBenchOptions of_distances{.peers = options.peers,
+                                        .threads = options.threads,
+                                        .repeat = options.repeat,
+                                        .limit_s = options.limit_s};
+      of_distances.question.task = static_cast<DistanceTask>(word_of(
+          "--distances", distances_, {"objects", "nearest"}, "none", "give objects or nearest"));
+      if (within_) {
+        of_distances.question.within =
+            number_of<double>("--within", *within_, "none", 0, std::numeric_limits<double>::max(),
+                              "give a distance in world units, 0 or more");
+      }
+      refuse_given_with("distances");
       const DistanceBenchResult result = bench_distances(scene, of_distances, progress);
       terminal.clear();
       if (outputs.json) write_json(to_json(scene, of_distances, result), *outputs.json);
@@ -99,7 +116,11 @@ class BenchCommand {
     }
     if (poses_) {
       require_nothing_ignored(scene, "farcull bench --poses");
-      const PoseBenchOptions of_poses = parse_poses(options);
+      const PoseBenchOptions of_poses{.peers = options.peers,
+                                      .threads = options.threads,
+                                      .repeat = options.repeat,
+                                      .limit_s = options.limit_s};
+      refuse_given_with("poses");
       const PoseBenchResult result = bench_poses(scene, of_poses, progress);
       terminal.clear();
       if (outputs.json) write_json(to_json(scene, of_poses, result), *outputs.json);
@@ -142,33 +163,6 @@ class BenchCommand {
       validate(run);
     }
     return options;
-  }
-  DistanceBenchOptions parse_distances(const BenchOptions& options) const {
-    DistanceBenchOptions out{.peers = options.peers,
-                             .threads = options.threads,
-                             .repeat = options.repeat,
-                             .limit_s = options.limit_s};
-    out.question.task = static_cast<DistanceTask>(word_of(
-        "--distances", distances_, {"objects", "nearest"}, "none", "give objects or nearest"));
-    if (within_) {
-      out.question.within =
-          number_of<double>("--within", *within_, "none", 0, std::numeric_limits<double>::max(),
-                            "give a distance in world units, 0 or more");
-    }
-    refuse_given_with("--distances", "distances");
-    return out;
-  }
-  PoseBenchOptions parse_poses(const BenchOptions& options) const {
-    refuse_given_with("--poses", "poses");
-    return {.peers = options.peers,
-            .threads = options.threads,
-            .repeat = options.repeat,
-            .limit_s = options.limit_s};
-  }
-  void refuse_given_with(const char* option, const char* subject) const {
-    refuse_given(
-        {{"--self", self_}, {"--methods", methods_.has_value()}, {"--device", device_.has_value()}},
-        fmt::format("says nothing about {}", subject), fmt::format("leave it or {} out", option));
   }
 
   SceneArguments scene_;

@@ -36,14 +36,6 @@ std::string clean_lines(const std::string& text) {
   return out;
 }
 
-void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
-                 const std::function<void(const TakeWord&)>& words, int status) {
-  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
-  if ((verified == kExitDone) == (status == kExitDone)) return;
-  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
-              "keep the certificate and the scene, and report them: one of the checkers is wrong");
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -78,19 +70,6 @@ GivenList read_list(const CheckArguments& arguments) {
   }
   std::ranges::stable_sort(list.rows, {}, &ListedPair::frame);
   return list;
-}
-
-// Writes the result for one scene. The record is written last, so that there is none if the two
-// checkers disagree.
-int write_check(const CheckArguments& arguments, const Scene& scene, const SceneCheck& done) {
-  const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
-  if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
-  if (arguments.verified) {
-    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
-    check_again(arguments, {arguments.certificate}, words, status);
-  }
-  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
-  return status;
 }
 
 // The end of a reason: the meshes in the order whose hash the certificate names. Empty if no order
@@ -134,46 +113,16 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
       list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   if (certificate && done.result.verdict == Verdict::not_proved)
     done.result.reason += order_of(arguments.scene.names, scene, certificate->scene.hash);
-  return write_check(arguments, scene, done);
+  const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+    check_again(arguments, {arguments.certificate}, words, status);
+  }
+  // Written last, so that there is no record if the two checkers disagree.
+  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+  return status;
 }
-
-// The output of the checks of frames: a row of the table and an element of the record for each,
-// then the verdict in all.
-class FrameChecks {
- public:
-  FrameChecks(const CheckArguments& arguments, const std::string& names)
-      : table_(arguments.json != "-"), wanted_(arguments.frames->count()) {
-    if (!arguments.json.empty()) json_.emplace(arguments.json);
-    if (table_) print(names);
-  }
-
-  // row: the frame's row of the table.
-  void add(long frame, const Scene& scene, const SceneCheck& check, std::string row) {
-    const Verdict verdict = check.result.verdict;
-    verdicts_.add(frame, verdict, check.result.meeting.size());
-    if (table_) {
-      if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
-      print(clean_lines(row));
-    }
-    if (!json_) return;
-    Json one = {{"frame", frame}};
-    one.update(check_json(scene, check));
-    json_->add(Json::object(), one, verdicts_.json(wanted_));
-  }
-
-  // proved: the sentence if every frame is proved; rest: the text after it.
-  int finish(const std::string& proved, const std::string& rest) {
-    if (json_) json_->finish();
-    if (table_) print("\n" + clean_lines(verdicts_.text(proved) + rest));
-    return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
-  }
-
- private:
-  bool table_;
-  long wanted_;
-  std::optional<FrameRecord> json_;
-  FrameVerdicts verdicts_;
-};
 
 // The certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
@@ -197,8 +146,14 @@ Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
   const FrameRange range = *arguments.frames;
   FrameSource source(arguments.scene, range, arguments.self);
-  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame",
-                                            "verdict", "box pairs", "meeting", "ms"));
+  std::optional<FrameRecord> json;
+  if (!arguments.json.empty()) json.emplace(arguments.json);
+  const bool table = arguments.json != "-";
+  if (table) {
+    print(fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict", "box pairs",
+                      "meeting", "ms"));
+  }
+  FrameVerdicts verdicts;
   SceneCheck last;
   std::optional<double> clearance;
   bool self = false, ignores = false;
@@ -224,18 +179,31 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     const CheckResult& result = last.result;
-    checks.add(
-        frame, scene, last,
-        fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
-                    grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
+    verdicts.add(frame, result.verdict, result.meeting.size());
+    if (table) {
+      std::string row = fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame,
+                                    to_string(result.verdict), grouped(result.found.box_pairs),
+                                    grouped(result.found.meeting), result.ms);
+      if (result.verdict != Verdict::proved) row += "         " + verdict_text(scene, last);
+      print(clean_lines(row));
+    }
+    if (!json) return;
+    Json one = {{"frame", frame}};
+    one.update(check_json(scene, last));
+    json->add(Json::object(), one, verdicts.json(range.count()));
   });
   const bool several = range.count() > 1 && !last.result.unattested.empty();
-  return checks.finish(
+  const std::string proved =
       fmt::format("these pairs {}, and no others",
                   *clearance == 0 ? "of the scene meet"
                                   : fmt::format("are at distance {} or less", *clearance)) +
-          proved_limits(*clearance, self, ignores),
-      not_asked + (several ? "of the last frame's run: " : "") + unattested_text(last));
+      proved_limits(*clearance, self, ignores);
+  if (json) json->finish();
+  if (table) {
+    print("\n" + clean_lines(verdicts.text(proved) + not_asked +
+                             (several ? "of the last frame's run: " : "") + unattested_text(last)));
+  }
+  return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
 }
 
 // Requires a number in the name of the certificate if, and only if, frames or tiles are asked for.

@@ -23,8 +23,12 @@ std::string clean_lines(const std::string& text);
 /// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
 using TakeWord = std::function<void(std::uint64_t)>;
 
-/// Asks the proved checker as well. Throws Error unless both checkers agree whether this is proved.
-/// status: the result of this checker. words: gives the words of the scene.
+/// Gives the certificates and the scene to the checker that Coq has proved
+/// (verify/certificate/coq): `farcull-check-verified`, which is in the folder of this program or in
+/// the PATH. Prints the SHA-256 of the files as this program has them, then the output of the
+/// checker: the same SHA-256, and its verdict. words: gives the words of the scene; status: the
+/// result of this checker. Throws Error if the other one cannot be run, or if they do not agree
+/// whether this is proved.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
@@ -33,19 +37,8 @@ void check_again(const CheckArguments& arguments, const std::vector<std::string>
 /// order. Prints the verdict and returns the exit status, as run_check().
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
-// ---- the checker that Coq has proved (verify/certificate/coq), a program of its own
-
 /// Gives all words of a scene, or those of its coordinates alone.
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
-
-/// Gives the certificates and the scene to `farcull-check-verified`, which is in the folder of this
-/// program or in the PATH. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
-/// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order.
-/// Prints on standard output the SHA-256 of the files as this program has them, then the output of
-/// the checker: the same SHA-256, and its verdict. words: gives the words of the scene; they go to
-/// the checker through a file in memory. Throws Error if it cannot be run.
-int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
-                         const std::function<void(const TakeWord&)>& words);
 
 }  // namespace farcull

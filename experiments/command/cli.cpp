@@ -62,17 +62,13 @@ class HelpCommand {
         });
   }
   int run() const {
-    if (words_.size() == 1) {
-      for (const HelpTopic& topic : kTopics) {
-        if (words_[0] != topic.name) continue;
-        write_help(topic.text);
-        return kExitDone;
-      }
+    std::string text = help_of(*app_, words_);
+    std::vector<std::string> topics;
+    for (const HelpTopic& topic : kTopics) {
+      topics.emplace_back(topic.name);
+      if (words_.size() == 1 && words_[0] == topic.name) text = topic.text;
     }
-    const std::string text = help_of(*app_, words_);
     if (text.empty()) {
-      std::vector<std::string> topics;
-      for (const HelpTopic& topic : kTopics) topics.emplace_back(topic.name);
       throw Error(
           fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
           fmt::format("{}give one of the topics {}, or a command that farcull help lists",
@@ -193,8 +189,9 @@ constexpr const char* kFirstScreen =
     "  farcull run two-tori                       a built-in scene; farcull scenes lists them\n"
     "  farcull compare two-tori                   what each method misses, and its time\n";
 
-// Sets the options of the program itself.
-void describe(CLI::App& app) {
+// Runs the command that the arguments name; returns the exit status.
+int dispatch(int argc, char** argv) {
+  CLI::App app("", "farcull");
   app.get_formatter()->column_width(28);
   app.set_help_flag("-h,--help", "print this and exit");
   app.set_version_flag("--version", std::string(kVersion) + ", commit " + FARCULL_COMMIT,
@@ -206,13 +203,6 @@ void describe(CLI::App& app) {
       "environment.\n\n"
       "Topics:\n" +
       help_topics_text());
-}
-
-// Runs the command that the arguments name; returns the exit status.
-int dispatch(int argc, char** argv) {
-  CLI::App app("", "farcull");
-  describe(app);
-
   std::vector<Command> commands;  // in the order of the help
   for (Command (*const add)(CLI::App&) :
        {add_run, add_verify, add_plan, add_compare, add_distance, add_clash, add_bench, add_doctor,

@@ -142,12 +142,6 @@ std::optional<Identity> identity_of(const std::string& path) {
   return Identity{status.st_dev, status.st_ino, file.filename().string(), true};
 }
 
-// Whether a built-in scene, with any numbers and suffixes, is made of packaged meshes.
-bool needs_meshes(const std::string& name) {
-  const BuiltinScene* const scene = find_builtin_scene(name);
-  return scene != nullptr && scene->needs_meshes;
-}
-
 std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOutput : file.path; }
 
 // A certificate holds one scene, so frames need one file each.
@@ -205,10 +199,6 @@ GivenOptions MethodOptions::given() const {
     if (has(option.name)) out[option.name] = text(option.name).value_or("");
   }
   return out;
-}
-
-void take_given(const char* name, const Text& text, RunOptions& options) {
-  if (text) take_option(name, *text, options);
 }
 
 std::string help_of_option(const std::string& name) { return spelled(run_option(name).help); }
@@ -298,8 +288,8 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
   if (arguments.empty()) add_packaged();
   for (const std::string& argument : arguments) {
     if (argument == "-") continue;  // standard input
-    if (is_builtin_scene(argument)) {
-      if (needs_meshes(argument)) add_packaged();
+    if (const BuiltinScene* const builtin = find_builtin_scene(argument)) {
+      if (builtin->needs_meshes) add_packaged();
     } else if (is_scene_file(argument)) {
       add(argument);
       for (const std::string& mesh : meshes_of_scene_file(argument)) add_mesh(mesh);
@@ -443,6 +433,27 @@ std::string device_of(const Text& device) {
   if (device && device->empty())
     throw Error("--device", "its value is empty", "give native, software, hardware or a number");
   return device.value_or("");
+}
+
+std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects) {
+  constexpr std::uint64_t kMostTriangles = 4'000'000;
+  constexpr std::size_t kMostLines = 3;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t o : objects) triangles += scene.objects[o].triangle_count;
+  if (triangles > kMostTriangles) return "";
+  std::string out;
+  std::size_t lines = 0;
+  for (const std::uint32_t o : objects) {
+    const std::optional<WeldHint> hint = weld_hint(scene, scene.objects[o]);
+    if (!hint) continue;
+    out += fmt::format(
+        "hint       {} is not closed: {}, one of them at {:.6g} {:.6g} {:.6g}. Their ends nearly\n"
+        "           coincide; --weld {:.0e}*size closes it\n",
+        scene.objects[o].name, counted(hint->open_edges, "open edge", "open edges"),
+        hint->place.x(), hint->place.y(), hint->place.z(), hint->tolerance);
+    if (++lines == kMostLines) break;
+  }
+  return out;
 }
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path) {

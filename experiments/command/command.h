@@ -266,8 +266,6 @@ class MethodOptions {
   std::map<std::string, bool> flags_;
   std::deque<std::string> words_;
 };
-/// Reads the option into `options` if it was given.
-void take_given(const char* name, const Text& text, RunOptions& options);
 
 /// Reads a distance in world units. Throws Error naming --clearance.
 double parse_clearance(const std::string& text);
@@ -286,9 +284,6 @@ OptionRow ignore_row(Text& ignore);
 
 /// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
-inline constexpr const char* kFacesHelp =
-    "with --pairs: two more columns, face_a and face_b, the\n"
-    "faces of the mesh files (see farcull help pairs)";
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"
@@ -335,12 +330,9 @@ class PictureCommand {
   int run() const;
   /// The parsed and checked options, all but the paths of the files.
   PictureArguments arguments() const;
-  /// The contents of the page of --html, from the arguments of its flat picture.
-  PageArguments page_arguments(const PictureArguments& picture) const;
 
  private:
-  /// The options that all panels share.
-  RunOptions usual_options() const;
+  PageArguments page_arguments(const PictureArguments& picture) const;
 
   SceneArguments scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
@@ -348,18 +340,9 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
-// What the program tells its user besides an answer (hints.cpp).
-
-/// The objects that collide with themselves (two of their triangles do), ascending.
-std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
-
 /// A line for each of these objects that is not closed but would be with --weld: where, and at
 /// which tolerance. At most three lines; none if the objects have more than 4 million triangles in
 /// all.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
-
-/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
-/// surfaces do not meet. Empty if there are none, or if more than a million pairs of boxes overlap.
-std::string nested_line(const Scene& scene, const Record& record);
 
 }  // namespace farcull

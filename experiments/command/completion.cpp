@@ -55,16 +55,14 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
   for (const DeclaredCommand& below : command.commands) visit(below, see);
 }
 
-// The last word of a command's name.
-std::string last_word(const std::string& name) { return name.substr(name.find_last_of(' ') + 1); }
-
 // The branches of `case "$1" in`, one per command: what may follow the command (`below`, `flags`,
 // `first`, `others`).
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
     std::vector<std::string> commands, options;
-    for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
+    for (const DeclaredCommand& below : command.commands)
+      commands.push_back(below.name.substr(below.name.find_last_of(' ') + 1));
     for (const DeclaredOption& option : command.options)
       options.insert(options.end(), option.names.begin(), option.names.end());
     const std::string argument =
@@ -180,12 +178,6 @@ complete -F _farcull farcull
 )sh";
 }
 
-// The script for a shell. Throws Error naming SHELL if the shell is unknown.
-std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
-  if (shell == "bash") return bash_script(program);
-  throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash");
-}
-
 class CompletionCommand {
  public:
   CLI::App* add_to(CLI::App& app) {
@@ -197,7 +189,9 @@ class CompletionCommand {
                        "`cmake --install` puts it in place.");
   }
   int run() const {
-    write_help(completion_script(declared(*program_), shell_));
+    if (shell_ != "bash")
+      throw Error("SHELL", quoted(shell_) + " is no shell that is known here", "give bash");
+    write_help(bash_script(declared(*program_)));
     return 0;
   }
 

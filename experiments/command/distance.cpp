@@ -197,14 +197,12 @@ class DistanceCommand {
     if (inside_ && out.inside && out.pairs == DistancePairs::all)
       throw Error("--inside", *inside_ + " has no meaning with --pairs all",
                   "leave it out, or use --pairs objects or nearest");
-    out.threads = threads();
+    if (threads_) {
+      out.threads = number_of<unsigned>("--threads", *threads_, "no number of threads", 1,
+                                        kMostThreads, fmt::format("give 1 to {}", kMostThreads));
+    }
     out.verify = verify_;
     return out;
-  }
-  unsigned threads() const {
-    if (!threads_) return 0;
-    return number_of<unsigned>("--threads", *threads_, "no number of threads", 1, kMostThreads,
-                               fmt::format("give 1 to {}", kMostThreads));
   }
   void require_question(const Scene& scene, const DistanceOptions& options) const {
     require_asked(scene, {});

@@ -112,17 +112,6 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
-RunOptions PictureCommand::usual_options() const {
-  RunOptions usual;
-  usual.device = farcull::device_of(device_);
-  usual.verify = false;
-  if (resolution_) usual.resolution = parse_resolution(*resolution_);
-  take_given("radius", radius_, usual);
-  take_given("offset", offset_, usual);
-  take_given("depth", depth_, usual);
-  return usual;
-}
-
 PictureArguments PictureCommand::arguments() const {
   PictureArguments out;
   out.scene = scene_;
@@ -141,7 +130,12 @@ PictureArguments PictureCommand::arguments() const {
   out.view = view_.value_or("");
   out.up = up_.value_or("");
 
-  RunOptions usual = usual_options();
+  RunOptions usual{.device = device_of(device_), .verify = false};  // what all panels share
+  for (const auto& [name, text] :
+       {std::pair("resolution", resolution_), std::pair("radius", radius_),
+        std::pair("offset", offset_), std::pair("depth", depth_)}) {
+    if (text) take_option(name, *text, usual);
+  }
   if (method_ && compare_)
     throw Error("--compare", "names the methods, and so does --method", "give one of the two");
   bool far = false;
@@ -175,6 +169,7 @@ PictureArguments PictureCommand::arguments() const {
   return out;
 }
 
+// The contents of the page of --html, from the arguments of its flat picture.
 PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
   PageArguments out;
   out.picture = picture;

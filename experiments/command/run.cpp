@@ -6,7 +6,10 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
 
+#include "core/boxes/join.h"
 #include "core/scene/scene.h"
 #include "experiments/command/command.h"
 #include "experiments/measure/frames.h"
@@ -15,14 +18,10 @@
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "experiments/tiles/run_tile.h"
+#include "verify/inside.h"
 
 namespace farcull {
 namespace {
-
-void require_asked(const Census& census, const std::vector<ObjectPair>& ignored) {
-  farcull::require_asked(census.objects, census.self_objects > 0, ignored.size(), "SCENE",
-                         "test objects against themselves with --self");
-}
 
 std::vector<ContactKind> parse_kinds(const std::string& list) {
   std::vector<ContactKind> out;
@@ -82,6 +81,51 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
 
 namespace fs = std::filesystem;
 
+// The objects that collide with themselves (two of their triangles do), ascending.
+std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record) {
+  std::set<std::uint32_t> found;
+  for (const auto* pairs : {&record.collisions.pairs, &record.collisions.neighbour_pairs}) {
+    for (const TrianglePair& pair : *pairs) {
+      const std::uint32_t a = place_of(scene, pair.a).object;
+      if (a == place_of(scene, pair.b).object) found.insert(a);
+    }
+  }
+  return {found.begin(), found.end()};
+}
+
+// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their surfaces
+// do not meet. Empty if there are none, or if more than a million pairs of boxes overlap.
+std::string nested_line(const Scene& scene, const Record& record) {
+  // Pairs of objects whose boxes overlap. Below, one box has to lie in the other one.
+  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+  std::vector<std::uint32_t> all(boxes.size());
+  std::iota(all.begin(), all.end(), 0u);
+  constexpr std::size_t kMost = 1'000'000;
+  const std::vector<TrianglePair> overlapping = box_join(boxes, all, all, kMost);
+  if (overlapping.size() > kMost) return "";
+  std::set<ObjectPair> meet;
+  for (const TrianglePair& pair : record.collisions.pairs)
+    meet.insert({place_of(scene, pair.a).object, place_of(scene, pair.b).object});
+  meet.insert(record.options.ignored.begin(), record.options.ignored.end());
+  std::map<std::uint32_t, bool> closed;
+  std::uint64_t count = 0;
+  std::string first;
+  for (const auto& [a, b] : overlapping) {
+    for (const auto& [in, out] : {ObjectPair{a, b}, ObjectPair{b, a}}) {
+      if (!lies_within(boxes[in], boxes[out]) || meet.contains({a, b})) continue;
+      if (!closed.contains(out)) closed[out] = is_closed(scene, out);
+      if (!closed[out]) continue;
+      if (count++ == 0) first = scene.objects[in].name + " in " + scene.objects[out].name;
+      break;
+    }
+  }
+  if (count == 0) return "";
+  return fmt::format(
+      "nested     {} may lie wholly inside a closed one, as {}. Surfaces that do\n"
+      "           not meet are no collision; farcull distance says what lies inside\n",
+      counted(count, "object", "objects"), first);
+}
+
 // The path of the file, relative to the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
   // Behind links, `..` is not the folder that the path names, so links are resolved first.
@@ -102,8 +146,6 @@ void require_text(const std::string& option, const std::string& file) {
   }
 }
 
-// `farcull run --tiles K/N`.
-
 // verify requires the guarantee of every method; plan prints what run would do.
 class RunCommand {
  public:
@@ -116,8 +158,7 @@ class RunCommand {
     else
       rows.push_back({"--no-verify", &no_verify_, "", "leave out the accounting of all pairs"});
     const auto& [name, title, examples] = kCommands[static_cast<std::size_t>(kind_)];
-    return add_command(app, name, title, rows + (kind_ == Kind::plan ? plan_rows() : output_rows()),
-                       examples);
+    return add_command(app, name, title, rows + output_rows(), examples);
   }
   int run() const {
     const RunOptions options = parse();
@@ -142,8 +183,9 @@ class RunCommand {
     if (segments_) out.contacts = ContactDetail::segments;
     return read_options(options_.given(), out);
   }
-  Rows plan_rows() { return {{"--json", &outputs_.json, "FILE", kJsonHelp}}; }
   Rows output_rows() {
+    const OptionRow json = {"--json", &outputs_.json, "FILE", kJsonHelp};
+    if (kind_ == Kind::plan) return {json};
     Rows rows = {{"--frames", &frames_, "N|A:B",
                   "run N frames (0 to N-1), or those numbered A to B, of\n"
                   "meshes with %d or %04d in their names, or of a\n"
@@ -155,7 +197,9 @@ class RunCommand {
                   "triangle_a, object_b, triangle_b, all counted from 0,\n"
                   "triangles within their object; with --self also\n"
                   "neighbours, 0 or 1 (see farcull help pairs)"},
-                 {"--faces", &faces_, "", kFacesHelp},
+                 {"--faces", &faces_, "",
+                  "with --pairs: two more columns, face_a and face_b, the\n"
+                  "faces of the mesh files (see farcull help pairs)"},
                  {"--names", &names_, "",
                   "with --pairs: two more columns, name_a and name_b, the\n"
                   "names of the objects"},
@@ -172,7 +216,7 @@ class RunCommand {
                  {"-v,--verbose", &verbose_, "",
                   "print the stages as well: what each took and left, and\n"
                   "what was left out and why"},
-                 {"--json", &outputs_.json, "FILE", kJsonHelp},
+                 json,
                  {"--certificate", &outputs_.certificate, "FILE",
                   "write evidence for every pair to this file, for\n"
                   "`farcull check`; with --frames one for each, with %d\n"
@@ -259,15 +303,6 @@ class RunCommand {
     const Colour colour = accounting.false_negatives == 0 ? Colour::good : Colour::bad;
     return coloured(verdict_text(accounting), colour, STDOUT_FILENO) + "\n";
   }
-  SceneSource source() const {
-    return [this](const TakePart& take) {
-      return stream_scene(scene_, [&](Scene& part) {
-        if (options_.has("self")) make_self(part);
-        take(part);
-        say_notes();
-      });
-    };
-  }
   // Throws Error if an option is impossible tile by tile.
   void refuse_with_tiles(const RunOptions& options) const {
     const auto refuse = [](const std::string& option, bool given, const std::string& why) {
@@ -294,10 +329,18 @@ class RunCommand {
     TerminalProgress terminal;
     const Progress progress = terminal.callback();
     Session session(options.device);
-    const TileRun tile = farcull::run_tile(source(), question, session, progress);
+    const SceneSource source = [this](const TakePart& take) {
+      return stream_scene(scene_, [&](Scene& part) {
+        if (options_.has("self")) make_self(part);
+        take(part);
+        say_notes();
+      });
+    };
+    const TileRun tile = farcull::run_tile(source, question, session, progress);
     terminal.clear();
     require_pairs(nothing_to_test(tile.census), with_self());
-    require_asked(tile.census, tile.ignored);
+    require_asked(tile.census.objects, tile.census.self_objects > 0, tile.ignored.size(), "SCENE",
+                  "test objects against themselves with --self");
     if (outputs.certificate) {
       require_nothing_ignored(names_of(tile.census), "a certificate");
       const WholeScene whole = whole_scene(tile.census, tile.tile, tile.part);

@@ -105,7 +105,9 @@ class ScenesCommand {
     for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))
       there.push_back({"--write", entry.path().string()});
     require_not_read(scene_files({*name_}), there);
-    write();
+    const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
+    print(fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
+                      counted(written.bytes, "byte", "bytes"), written.scene_file));
     return 0;
   }
 
@@ -123,11 +125,6 @@ class ScenesCommand {
     if (!outputs.to_stdout()) {
       print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
     }
-  }
-  void write() const {
-    const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
-    print(fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
-                      counted(written.bytes, "byte", "bytes"), written.scene_file));
   }
 
   Text name_, folder_;

@@ -65,9 +65,11 @@ constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 class StudiesCommand {
  public:
-  // Declares each study, and `all`, as a command of its own.
-  void add_to(CLI::App& experiment) {
-    const auto declare = [&](const std::string& name, const std::string& title) {
+  // Declares each study, and `all`, as a command of its own, which calls this object.
+  std::vector<Command> add_to(CLI::App& experiment) {
+    std::vector<Command> out;
+    const auto declare = [&](const std::string& name, const std::string& title,
+                             const std::vector<Study>& chosen) {
       Rows rows = {
           {"--out", &out_, "DIR",
            fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder)},
@@ -75,9 +77,8 @@ class StudiesCommand {
           {"--seed", &seed_, "N", "of what is random in the grid; default 1"},
           {"--resume", &resume_, "", "go on with what is in the folder"},
           {"--no-times", &no_times_, "",
-           "counts alone: run timed points once and keep no time, as\nfor shards side by side on "
-           "one "
-           "machine"},
+           "counts alone: run timed points once and keep no time, as\nfor shards side by side "
+           "on one machine"},
           {"--shard", &shard_, "K/N", "measure the Kth of N parts"},
           {"--device", &device_, "DEVICE", kDeviceHelp},
           {"--devices", &devices_, "LIST|all",
@@ -91,7 +92,7 @@ class StudiesCommand {
                             "ask these alone, as in far,boxes,exact; default all.\n"
                             "Methods of farcull run on native unless --device is given"}};
       }
-      commands_.push_back(
+      CLI::App* const command =
           add_command(experiment, name, title, rows,
                       fmt::format("Examples:\n"
                                   "  farcull experiment {0} --quick\n"
@@ -99,27 +100,21 @@ class StudiesCommand {
                                   "  farcull experiment {0} --out results --shard 2/4\n\n"
                                   "Then: farcull report DIR; for shards farcull merge DIR first.\n"
                                   "Exit status 1: a method that promises missed a pair.",
-                                  name)));
+                                  name));
+      out.push_back({command, [this, name, chosen] { return run(name, chosen); }});
     };
-    for (const Study& study : studies()) declare(study.name, study.title);
+    for (const Study& study : studies()) declare(study.name, study.title, {study});
     declare("all",
-            "all of these studies but cloth, libraries, model\nand proximity, one after the other");
+            "all of these studies but cloth, libraries, model\nand proximity, one after the other",
+            studies_of_all());
+    return out;
   }
-  const std::vector<CLI::App*>& commands() const { return commands_; }
-  // Runs the command that the command line named.
-  int run() {
+
+ private:
+  // Exit status 1: a method with a guarantee missed a pair; 2: a point could not be measured.
+  int run(const std::string& name, const std::vector<Study>& chosen) const {
     StudiesRequest request;
-    std::string name;
-    for (std::size_t i = 0; i < commands_.size(); ++i) {
-      if (!given(*commands_[i])) continue;
-      if (i < studies().size()) {
-        name = studies()[i].name;
-        request.studies = {studies()[i]};
-      } else {
-        name = "all";
-        request.studies = studies_of_all();
-      }
-    }
+    request.studies = chosen;
     if (out_.empty()) throw Error("--out", "the folder is empty", "name one");
     if (seed_ < 1 || seed_ > kMostSeed) {
       throw Error("--seed", fmt::format("{} is out of range", seed_),
@@ -155,9 +150,6 @@ class StudiesCommand {
     }
     return status;
   }
-
- private:
-  std::vector<CLI::App*> commands_;  // of studies() and, last, all
   std::vector<std::string> devices() const {
     if (!devices_) return {device_of(device_)};
     if (device_)
@@ -230,17 +222,6 @@ class StudiesCommand {
   std::uint64_t seed_ = 1;
   Text shard_, device_, devices_, suite_, contestants_;
 };
-
-// A command for each study, and `all`. Exit status 1: a method with a guarantee missed a pair; 2: a
-// point could not be measured.
-std::vector<Command> add_studies(CLI::App& experiment) {
-  const auto studies = std::make_shared<StudiesCommand>();
-  studies->add_to(experiment);
-  std::vector<Command> out;
-  for (CLI::App* command : studies->commands())
-    out.push_back({command, [studies] { return studies->run(); }});
-  return out;
-}
 
 class MergeCommand {
  public:
@@ -324,8 +305,8 @@ class ExperimentCommand {
         "Examples:\n  farcull experiment all --quick\n  farcull experiment accuracy --out results\n"
         "  farcull experiment lemma --points 1000000");
     allow_one_command(*command);
-    commands_ = add_studies(*command);
-    commands_.insert(commands_.end(), {add_lemma(*command)});
+    commands_ = studies_.add_to(*command);
+    commands_.push_back(add_lemma(*command));
     return command;
   }
   int run() const {
@@ -338,6 +319,7 @@ class ExperimentCommand {
   }
 
  private:
+  StudiesCommand studies_;
   std::vector<Command> commands_;
 };
 

@@ -12,16 +12,6 @@
 namespace farcull {
 namespace {
 
-SuiteSettings settings_of(const Text& size, const Text& seed) {
-  SuiteSettings out;
-  if (word_of("--size", size, {"small", "full"}, "no size", "give small or full") == 1)
-    out.size = SuiteSize::full;
-  if (seed)
-    out.seed = number_of<std::uint64_t>("--seed", *seed, "no whole number", 0, UINT64_MAX,
-                                        "give 0 or more");
-  return out;
-}
-
 std::string pairs_table(const std::vector<SuiteCounts>& families) {
   Table table("lrrrrrrrrrrr");
   std::vector<std::string> head = {"pairs", "all", "collide"};
@@ -80,7 +70,13 @@ class SuiteCommand {
       become_python({"-I", "-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
                     "install Python 3.8 or later");
     }
-    const SuiteSettings settings = settings_of(size_, seed_);
+    SuiteSettings settings;
+    if (word_of("--size", size_, {"small", "full"}, "no size", "give small or full") == 1)
+      settings.size = SuiteSize::full;
+    if (seed_) {
+      settings.seed = number_of<std::uint64_t>("--seed", *seed_, "no whole number", 0, UINT64_MAX,
+                                               "give 0 or more");
+    }
     check_output("-");
     TerminalProgress terminal;
     const SuiteSummary summary = write_suite(folder_, settings, terminal.callback());

@@ -86,23 +86,9 @@ void require_said(const std::string& said, const std::vector<std::string>& certi
     refuse("ended with a status that is not that of its verdict");
 }
 
-}  // namespace
-
-void give_coordinates(const Scene& scene, const TakeWord& take) {
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    for (const Vec3& p : scene.corners(t)) {
-      for (int i = 0; i < 3; ++i) take(std::bit_cast<std::uint64_t>(p[i]));
-    }
-  }
-}
-
-void give_words(const Scene& scene, const TakeWord& take) {
-  take(scene.objects.size());
-  for (const Object& object : scene.objects)
-    take(object.triangle_count | std::uint64_t{object.self} << 32);
-  give_coordinates(scene, take);
-}
-
+// Runs the proved checker. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
+// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order. The
+// words of the scene go to the checker through a file in memory.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words) {
   // The new process inherits the descriptor, and opens the file by its number.
@@ -177,6 +163,31 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   constexpr int kUnread = 2;
   if (WEXITSTATUS(status) != kUnread) require_said(said, hashes, scene, WEXITSTATUS(status) == 0);
   return WEXITSTATUS(status);
+}
+
+}  // namespace
+
+void give_coordinates(const Scene& scene, const TakeWord& take) {
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) {
+      for (int i = 0; i < 3; ++i) take(std::bit_cast<std::uint64_t>(p[i]));
+    }
+  }
+}
+
+void give_words(const Scene& scene, const TakeWord& take) {
+  take(scene.objects.size());
+  for (const Object& object : scene.objects)
+    take(object.triangle_count | std::uint64_t{object.self} << 32);
+  give_coordinates(scene, take);
+}
+
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status) {
+  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
+  if ((verified == kExitDone) == (status == kExitDone)) return;
+  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
+              "keep the certificate and the scene, and report them: one of the checkers is wrong");
 }
 
 }  // namespace farcull

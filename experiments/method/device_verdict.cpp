@@ -166,17 +166,15 @@ std::string text_of(const VerdictInputs& inputs) {
   return out;
 }
 
+// The file of a verdict, in $XDG_CACHE_HOME/farcull, else in $HOME/.cache/farcull; "" if neither is
+// an absolute path.
 std::string file_of(const std::string& inputs) {
-  const std::string folder = verdict_folder();
-  return folder.empty() ? "" : folder + "/device-" + hash_of(inputs);
-}
-
-// A file: the hash of the lines below it, the inputs, a line of three values, a line per failure.
-std::string file_text(const std::string& inputs, const DeviceVerdict& verdict) {
-  std::ostringstream rest;
-  rest << inputs << verdict.made << ' ' << verdict.probes << ' ' << verdict.ms << '\n';
-  for (const std::string& failure : verdict.failed) rest << failure << '\n';
-  return hash_of(rest.str()) + "\n" + rest.str();
+  const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
+  const char* const cache = std::getenv("XDG_CACHE_HOME");
+  const char* const home = std::getenv("HOME");
+  if (!absolute(cache) && !absolute(home)) return "";
+  const std::string folder = absolute(cache) ? cache : std::string(home) + "/.cache";
+  return folder + "/farcull/device-" + hash_of(inputs);
 }
 
 // Returns nothing if the file is missing, damaged, of another user, or about other inputs.
@@ -217,12 +215,6 @@ std::string write(const std::string& file, const std::string& text) {
   return file + ": " + error.message();
 }
 
-// Removes an older verdict, or invalidates it if the folder allows no removal.
-void forget(const std::string& file) {
-  std::error_code error;
-  if (!file.empty() && !fs::remove(file, error) && error) fs::resize_file(file, 0, error);
-}
-
 }  // namespace
 
 std::vector<SolidKernel> solid_kernels() {
@@ -253,7 +245,7 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
                                     bool brief) {
   std::vector<ProbeResult> out = run_probes(context, {.brief = brief}, started);
   if (started) started("kernels");
-  for (ProbeResult& r : solid_kernel_probes(context, {.brief = brief})) out.push_back(std::move(r));
+  for (ProbeResult& r : solid_kernel_probes(context)) out.push_back(std::move(r));
   std::ranges::stable_sort(out, {}, [](const ProbeResult& r) {
     return std::pair(r.assumption.size(), r.assumption);  // A10 after A2
   });
@@ -302,14 +294,6 @@ VerdictInputs verdict_inputs(const GlInfo& device) {
           {"environment", driver_environment()}};
 }
 
-std::string verdict_folder() {
-  const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
-  const char* const cache = std::getenv("XDG_CACHE_HOME");
-  if (absolute(cache)) return std::string(cache) + "/farcull";
-  const char* const home = std::getenv("HOME");
-  return absolute(home) ? std::string(home) + "/.cache/farcull" : "";
-}
-
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say) {
   const std::string inputs = text_of(verdict_inputs(device));
   if (const std::optional<DeviceVerdict> known = read(file_of(inputs), inputs)) return *known;
@@ -339,10 +323,17 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // Removed first: if a later step fails, no older verdict is left that these results refute.
-  if (!out.holds) forget(file);
+  // An older verdict is removed first, or invalidated if the folder allows no removal: so none is
+  // left that these results refute, even if a later step fails.
+  std::error_code error;
+  if (!out.holds && !file.empty() && !fs::remove(file, error) && error)
+    fs::resize_file(file, 0, error);
   if (!out.holds && out.failed.empty()) return out;
-  out.note = write(file, file_text(inputs, out));
+  // The hash of the lines below it, the inputs, a line of three values, a line per failure.
+  std::ostringstream rest;
+  rest << inputs << out.made << ' ' << out.probes << ' ' << ms << '\n';
+  for (const std::string& failure : out.failed) rest << failure << '\n';
+  out.note = write(file, hash_of(rest.str()) + "\n" + rest.str());
   if (out.note.empty()) out.file = file;
   return out;
 }

@@ -147,23 +147,13 @@ void require_few_questions(const Scene& scene, const DistanceOptions& options) {
 }
 
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
-                                                   const DistanceMemory* memory) {
-  if (memory == nullptr || memory->objects.empty()) return {};
+                                                   std::span<const NearHint> hints) {
+  if (hints.empty()) return {};
   std::vector<std::optional<TrianglePair>> out(questions.size());
   for (std::size_t k = 0; k < questions.size(); ++k) {
-    const auto found = std::ranges::lower_bound(memory->objects, questions[k]);
-    if (found != memory->objects.end() && *found == questions[k])
-      out[k] = memory->nearest[static_cast<std::size_t>(found - memory->objects.begin())];
+    const auto found = std::ranges::lower_bound(hints, questions[k], {}, &NearHint::objects);
+    if (found != hints.end() && found->objects == questions[k]) out[k] = found->triangles;
   }
-  return out;
-}
-
-// The nearest pairs of the previous frame.
-std::vector<NearHint> hints_of(const DistanceMemory* memory) {
-  std::vector<NearHint> out;
-  if (memory == nullptr) return out;
-  for (std::size_t k = 0; k < memory->objects.size(); ++k)
-    out.push_back({memory->objects[k], memory->nearest[k]});
   return out;
 }
 
@@ -212,13 +202,9 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   for (const NearestOfObject& of : nearest_of_objects(scene, distances, k)) {
     for (const std::size_t d : of.distances) wanted[d] = true;
   }
-  std::size_t kept = 0;
-  for (std::size_t d = 0; d < distances.size(); ++d) {
-    if (!wanted[d]) continue;
-    if (kept != d) distances[kept] = std::move(distances[d]);
-    ++kept;
-  }
-  distances.resize(kept);
+  std::erase_if(distances, [&, first = distances.data()](const Distance& d) {
+    return !wanted[static_cast<std::size_t>(&d - first)];
+  });
 }
 
 // Decides ties for the search: of many pairs that are equally near, it keeps one.
@@ -262,7 +248,7 @@ void add_closest_stage(std::uint64_t left, double ms, DistanceRecord& record) {
                           .unit = Unit::pairs});
 }
 
-void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
+void between_objects(const Scene& scene, const Progress& progress, std::span<const NearHint> hints,
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
@@ -270,7 +256,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   const ProximityTrees trees = trees_of(scene, options.threads);
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
-    near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
+    near = trees.nearest_objects(options.k, options.within, hints, progress);
   } else {
     std::vector<ObjectPair> questions =
         std::isfinite(options.within) ? trees.objects_within(options.within, 4 * options.most_pairs)
@@ -278,7 +264,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
     std::erase_if(questions, [&](const ObjectPair& pair) {
       return std::ranges::binary_search(scene.ignored, pair);
     });
-    near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
+    near = trees.near_pairs(questions, options.within, hints_for(questions, hints), progress);
   }
   record.counts = trees.counts();
   std::uint64_t left = 0;
@@ -457,16 +443,13 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   if (options.pairs == DistancePairs::all) {
     between_triangles(scene, progress, out);
   } else {
-    between_objects(scene, progress, memory, out);
+    between_objects(scene, progress, memory ? *memory : std::span<const NearHint>(), out);
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
     DistanceMemory kept;  // so that an exception leaves `memory` as it was
     if (options.pairs != DistancePairs::all) {
-      for (const Distance& d : out.distances) {
-        kept.objects.push_back(d.objects);
-        kept.nearest.push_back(d.triangles);
-      }
+      for (const Distance& d : out.distances) kept.push_back({d.objects, d.triangles});
     }
     *memory = std::move(kept);
   }

@@ -3,7 +3,6 @@
 #include "experiments/method/method.h"
 
 #include <array>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -120,19 +119,22 @@ Method parse_method(const std::string& name, const std::string& option) {
     if (name == to_string(method)) return method;
   }
   const bool renamed = name == "far-pairs";
-  std::vector<std::string> known;
-  for (const Method method : all_methods()) known.push_back(to_string(method));
-  throw Error(
-      option, "'" + name + "' is no method",
-      (renamed ? "far-pairs is now called boxes; " : did_you_mean(likely_word(name, known))) +
-          "give " + method_names());
+  throw Error(option, "'" + name + "' is no method",
+              (renamed ? "far-pairs is now called boxes; "
+                       : did_you_mean(likely_word(name, list_of_methods()))) +
+                  "give " + method_names());
+}
+
+std::vector<std::string> list_of_methods(const std::function<bool(const Traits&)>& can) {
+  std::vector<std::string> names;
+  for (const Traits& method : kTable) {
+    if (!can || can(method)) names.emplace_back(method.name);
+  }
+  return names;
 }
 
 std::string method_names(const std::function<bool(const Traits&)>& can) {
-  std::vector<std::string> names;
-  for (const Method method : all_methods()) {
-    if (!can || can(traits(method))) names.push_back(to_string(method));
-  }
+  const std::vector<std::string> names = list_of_methods(can);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
     text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
