@@ -206,17 +206,6 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
 }
 
-// Requires a number in the name of the certificate if, and only if, frames or tiles are asked for.
-void require_number(const std::string& certificate, bool numbers) {
-  if (certificate.empty() || is_numbered(certificate) == numbers) return;
-  if (numbers) {
-    throw Error("CERTIFICATE", "'" + certificate + "' has no place for a number",
-                "put %d or %04d where the number of the frame or tile is in its name");
-  }
-  throw Error("CERTIFICATE", "'" + certificate + "' has a place for a number",
-              "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
-}
-
 class CheckCommand {
  public:
   CLI::App* add_to(CLI::App& app) {
@@ -309,7 +298,15 @@ class CheckCommand {
                   "is for certificates of tiles, without --frames, --clearance and --ignore",
                   "leave it out, or name the certificates of the tiles");
     }
-    require_number(to.certificate, to.frames || to.tiles);
+    if (const bool numbers = to.frames || to.tiles;
+        !to.certificate.empty() && is_numbered(to.certificate) != numbers) {
+      if (numbers) {
+        throw Error("CERTIFICATE", "'" + to.certificate + "' has no place for a number",
+                    "put %d or %04d where the number of the frame or tile is in its name");
+      }
+      throw Error("CERTIFICATE", "'" + to.certificate + "' has a place for a number",
+                  "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
+    }
     if (to.verified) {
       const auto refuse = [](const char* reason, const char* remedy) {
         throw Error("--verified", reason, remedy);

@@ -94,24 +94,15 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-bool is_scene(const std::string& word) {
-  return has_mesh_extension(word) || is_scene_file(word) || is_builtin_scene(word) ||
-         std::filesystem::is_directory(word);
-}
-
 // Turns an error of CLI11 into an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = "farcull";
-  for (bool deeper = true; deeper;) {
-    deeper = false;
-    for (const CLI::App* subcommand : command->get_subcommands({})) {
-      if (!subcommand->parsed()) continue;
-      command = subcommand;
-      name += " " + command->get_name();
-      deeper = true;
-      break;
-    }
+  const auto parsed = [](const CLI::App* subcommand) { return subcommand->parsed(); };
+  for (auto named = app.get_subcommands(parsed); !named.empty();
+       named = command->get_subcommands(parsed)) {
+    command = named.front();
+    name += " " + command->get_name();
   }
   const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
@@ -138,10 +129,10 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
           word, "no such command",
           "try " + command_with(name + " " + meant, std::vector(words.begin() + 1, words.end())));
     }
-    if (command == &app && is_scene(word)) {
-      const std::string act = std::filesystem::is_directory(word) ? "clash" : "run";
-      return Error(word, "stands where a command should",
-                   "try " + command_with(name + " " + act, words));
+    if (command == &app && (has_mesh_extension(word) || is_scene_file(word) ||
+                            is_builtin_scene(word) || std::filesystem::is_directory(word))) {
+      const char* const act = std::filesystem::is_directory(word) ? " clash" : " run";
+      return Error(word, "stands where a command should", "try " + command_with(name + act, words));
     }
     return Error(word, "no such command", fmt::format("give one of {}", fmt::join(known, ", ")));
   }

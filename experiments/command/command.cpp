@@ -29,9 +29,7 @@ namespace farcull {
 
 // ---- all uses of CLI11 by the commands, so that its templates are compiled once ----
 
-namespace {
-
-DeclaredCommand declared_below(const CLI::App& app, const std::string& parents) {
+DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
   out.name = parents.empty() ? app.get_name() : parents + " " + app.get_name();
   for (const CLI::Option* option : app.get_options()) {
@@ -45,13 +43,9 @@ DeclaredCommand declared_below(const CLI::App& app, const std::string& parents) 
     (option->get_positional() ? out.arguments : out.options).push_back(std::move(one));
   }
   for (const CLI::App* command : app.get_subcommands({}))
-    out.commands.push_back(declared_below(*command, out.name));
+    out.commands.push_back(declared(*command, out.name));
   return out;
 }
-
-}  // namespace
-
-DeclaredCommand declared(const CLI::App& app) { return declared_below(app, ""); }
 
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer) {
@@ -83,13 +77,11 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
   const CLI::App* command = &app;
   std::string before;
   for (const std::string& name : names) {
-    const CLI::App* found = nullptr;
-    for (const CLI::App* below : command->get_subcommands({})) {
-      if (below->get_name() == name) found = below;
-    }
-    if (found == nullptr) return "";
+    const auto found =
+        command->get_subcommands([&](const CLI::App* below) { return below->get_name() == name; });
+    if (found.empty()) return "";
     before += (before.empty() ? "" : " ") + command->get_name();
-    command = found;
+    command = found.front();
   }
   // App::help() would describe the command that was parsed, which is `help`.
   return command->get_formatter()->make_help(
@@ -113,9 +105,7 @@ struct Identity {
   ino_t inode = 0;
   std::string name;      // empty if the file exists
   bool regular = false;  // true also if the file does not exist yet
-
-  using Key = std::tuple<dev_t, ino_t, std::string>;
-  Key key() const { return {device, inode, name}; }
+  auto operator<=>(const Identity&) const = default;
 };
 
 // The file that writing to the path creates: a link to a missing file is followed to that file.
@@ -144,18 +134,6 @@ std::optional<Identity> identity_of(const std::string& path) {
 
 std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOutput : file.path; }
 
-// A certificate holds one scene, so frames need one file each.
-void require_number(const std::string& certificate, bool frames) {
-  if (is_numbered(certificate) == frames) return;
-  if (frames) {
-    throw Error("--certificate", "'" + certificate + "' has no place for the number of the frame",
-                "put %d or %04d there, as in certificate_%04d.json: each frame has a file of its "
-                "own");
-  }
-  throw Error("--certificate", "'" + certificate + "' has a place for the number of a frame",
-              "say which frames with --frames N or --frames FIRST:LAST, or name one file");
-}
-
 std::string complaint(const std::string& message) {
   return wrapped("farcull: " + clean_name(message), text_columns(stderr), 9);
 }
@@ -181,8 +159,7 @@ Rows MethodOptions::rows(const std::vector<std::string>& names) {
     Text& text = texts_[option.name];
     bool& flag = flags_[option.name];
     if (!names.empty() && std::ranges::find(names, option.name) == names.end()) continue;
-    const char* word = words_.emplace_back(option_word(option.name)).c_str();
-    out.push_back({word, &text, option.type, spelled(option.help)});
+    out.push_back({option_word(option.name), &text, option.type, spelled(option.help)});
     if (*option.type == 0) out.back().value = &flag;
     const auto draws_or_lacks = [&](Method method) {
       return draws(method) || !option.serves(traits(method));
@@ -301,17 +278,17 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 }
 
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::map<Identity::Key, const NamedFile*> written;  // the first output of each file
+  std::map<Identity, const NamedFile*> written;  // the first output of each file
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     if (identity && identity->regular && identity->name.empty())
-      written.try_emplace(identity->key(), &output);
+      written.try_emplace(*identity, &output);
   }
   if (written.empty()) return;
   for (const NamedFile& input : inputs) {
     const std::optional<Identity> read = identity_of(input.path);
     if (!read) continue;
-    const auto found = written.find(read->key());
+    const auto found = written.find(*read);
     if (found == written.end()) continue;
     const NamedFile& output = *found->second;
     throw Error(output.by,
@@ -324,13 +301,13 @@ void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<Na
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs) {
   if (std::ranges::find(outputs, "-", &NamedFile::path) == outputs.end())
     outputs.insert(outputs.begin(), {kStandardOutput, "-"});
-  std::map<Identity::Key, const NamedFile*> files;
+  std::map<Identity, const NamedFile*> files;
   const NamedFile* standard_output = nullptr;
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     const NamedFile* other = nullptr;
     if (identity && identity->regular) {
-      const auto [place, is_new] = files.try_emplace(identity->key(), &output);
+      const auto [place, is_new] = files.try_emplace(*identity, &output);
       if (!is_new) other = place->second;
     }
     if (output.path == "-") {
@@ -377,7 +354,15 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                   std::string("name the file to write first, as in ") + option + " " + example);
     }
     const bool certificate = path == &outputs.certificate;
-    if (certificate) require_number(**path, frames.has_value());
+    if (certificate && is_numbered(**path) != frames.has_value()) {
+      if (frames) {
+        throw Error(option, "'" + **path + "' has no place for the number of the frame",
+                    "put %d or %04d there, as in certificate_%04d.json: each frame has a file of "
+                    "its own");
+      }
+      throw Error(option, "'" + **path + "' has a place for the number of a frame",
+                  "say which frames with --frames N or --frames FIRST:LAST, or name one file");
+    }
     const std::vector<std::string> each =
         certificate ? numbered_files(**path, frames) : std::vector{**path};
     for (const std::string& file : each) files.push_back({option, file});

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -44,7 +43,7 @@ enum class Need : std::uint8_t { may, must };
 /// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
 /// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
-  const char* name;
+  std::string name;
   std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
@@ -81,7 +80,8 @@ struct DeclaredCommand {
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
 };
-DeclaredCommand declared(const CLI::App& app);
+/// parents: the names of the commands above it.
+DeclaredCommand declared(const CLI::App& app, const std::string& parents = "");
 /// The text that --help prints for the program (no names), a command, or a subcommand. Empty if
 /// there is no such command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
@@ -264,7 +264,6 @@ class MethodOptions {
   // One entry per option of the table. Rows point at them, so their addresses must not change.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
-  std::deque<std::string> words_;
 };
 
 /// Reads a distance in world units. Throws Error naming --clearance.

@@ -41,84 +41,17 @@ constexpr const char* kDistanceExamples =
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
 
-/// Writes the output of the frames, one after the other, and their sums.
-class Frames {
- public:
-  Frames(const Outputs& outputs, const DistanceOptions& options, long wanted)
-      : verify_(options.verify), to_stdout_(outputs.to_stdout()), wanted_(wanted) {
-    if (outputs.json) json_.emplace(*outputs.json);
-    if (outputs.csv) csv_.emplace(*outputs.csv);
-  }
-
-  const DistanceAccounting& sum() const { return sum_; }
-
-  void add(long frame, const Scene& scene, const DistanceRecord& record, Json of,
-           bool topology_changed) {
-    const bool first = ms_.empty();
-    ms_.push_back(record.ms);
-    if (record.verification) add_fields(*record.verification, sum_);
-    Json one = {{"frame", frame},
-                {"hash", of["scene"]["hash"]},
-                {"triangles", scene.triangles.size()},
-                {"topology_changed", topology_changed}};
-    for (const char* key : kOfFrame) {
-      one[key] = of[key];
-      of.erase(key);
-    }
-    if (first) head_ = of;
-    if (json_) json_->add(head_, one, summary());
-    if (csv_) {
-      const std::string rows = distances_rows(scene, record, std::to_string(frame) + ",");
-      csv_->add((first ? "frame," + distances_header() : "") + rows, "");
-    }
-    if (!to_stdout_) print((first ? names() : "") + row(frame, record));
-  }
-
-  void finish() {
-    if (json_) json_->finish();
-    if (csv_) csv_->finish();
-    if (to_stdout_) return;
-    const FrameTimes times = summary_of(ms_);
-    std::string end =
-        fmt::format("\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms\n",
-                    times.median, times.p95, times.max);
-    if (verify_) end += verdict_text(sum_) + "\n" + accounting_sum(sum_);
-    print(end);
-  }
-
- private:
-  Json summary() const {
-    return {{"frames", ms_.size()},
-            {"wanted", wanted_},
-            {"ms", json_of(summary_of(ms_))},
-            {"missed", verify_ ? Json(sum_.nearer) : Json(nullptr)},
-            {"wrong", verify_ ? Json(sum_.wrong + sum_.earlier) : Json(nullptr)}};
-  }
-
-  std::string names() const {
-    return fmt::format("{:>8}  {:>10}  {:>24}  {:>9}{}\n", "frame", "pairs", "least distance", "ms",
-                       verify_ ? "  missed   wrong" : "");
-  }
-  static std::string row(long frame, const DistanceRecord& record) {
-    const auto least = std::ranges::min_element(
-        record.distances, {}, [](const Distance& d) { return d.closest.distance; });
-    std::string row = fmt::format("{:>8}  {:>10}  ", frame, record.distances.size());
-    row += least == record.distances.end() ? fmt::format("{:>24}", "none")
-                                           : fmt::format("{:>24}", least->closest.distance);
-    row += fmt::format("  {:>9.1f}", record.ms);
-    if (const auto& v = record.verification)
-      row += fmt::format("  {:>6}  {:>6}", v->nearer, v->wrong + v->earlier);
-    return row + "\n";
-  }
-
-  bool verify_, to_stdout_;
-  long wanted_;
-  std::optional<FrameRecord> json_;
-  std::optional<GrowingOutput> csv_;
-  Json head_;
-  std::vector<double> ms_;
-  DistanceAccounting sum_;
-};
+std::string row_of(long frame, const DistanceRecord& record) {
+  const auto least = std::ranges::min_element(record.distances, {},
+                                              [](const Distance& d) { return d.closest.distance; });
+  std::string row = fmt::format("{:>8}  {:>10}  ", frame, record.distances.size());
+  row += least == record.distances.end() ? fmt::format("{:>24}", "none")
+                                         : fmt::format("{:>24}", least->closest.distance);
+  row += fmt::format("  {:>9.1f}", record.ms);
+  if (const auto& v = record.verification)
+    row += fmt::format("  {:>6}  {:>6}", v->nearer, v->wrong + v->earlier);
+  return row + "\n";
+}
 
 // The objects of which no answer could say whether another object is inside, as they are not
 // closed.
@@ -242,21 +175,64 @@ class DistanceCommand {
       terminal.clear();
       complain(missing->where + ": the file does not exist; the frames before it are run");
     }
-    Frames frames(outputs, options, range.count());
+    std::optional<FrameRecord> json;
+    std::optional<GrowingOutput> csv;
+    if (outputs.json) json.emplace(*outputs.json);
+    if (outputs.csv) csv.emplace(*outputs.csv);
+    const bool table = !outputs.to_stdout(), verified = options.verify;
+    std::vector<double> ms;
+    DistanceAccounting sum;
     DistanceMemory memory;
-    for_each_frame(
-        range, "what they gave is written", progress, "", [&](long frame, const Progress&) {
-          const Scene& scene = source.at(frame);
-          require_question(scene, options);
-          const DistanceRecord record = distances(scene, options, progress, &memory);
-          terminal.clear();
-          say_notes();
-          frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_.names)),
-                     source.topology_changed());
-        });
-    frames.finish();
-    if (frames.sum().holds()) return kExitDone;
-    complain_broken(verdict_text(frames.sum()));
+    for_each_frame(range, "what they gave is written", progress, "",
+                   [&](long frame, const Progress&) {
+                     const Scene& scene = source.at(frame);
+                     require_question(scene, options);
+                     const DistanceRecord record = distances(scene, options, progress, &memory);
+                     terminal.clear();
+                     say_notes();
+                     const bool first = ms.empty();
+                     ms.push_back(record.ms);
+                     if (record.verification) add_fields(*record.verification, sum);
+                     if (json) {
+                       Json head = distances_json(scene, record, seed_of(scene_.names));
+                       Json one = {{"frame", frame},
+                                   {"hash", head["scene"]["hash"]},
+                                   {"triangles", scene.triangles.size()},
+                                   {"topology_changed", source.topology_changed()}};
+                       for (const char* key : kOfFrame) {
+                         one[key] = head[key];
+                         head.erase(key);
+                       }
+                       json->add(head, one,
+                                 {{"frames", ms.size()},
+                                  {"wanted", range.count()},
+                                  {"ms", json_of(summary_of(ms))},
+                                  {"missed", json_if(verified, sum.nearer)},
+                                  {"wrong", json_if(verified, sum.wrong + sum.earlier)}});
+                     }
+                     if (csv) {
+                       csv->add((first ? "frame," + distances_header() : "") +
+                                    distances_rows(scene, record, std::to_string(frame) + ","),
+                                "");
+                     }
+                     if (!table) return;
+                     const std::string names =
+                         fmt::format("{:>8}  {:>10}  {:>24}  {:>9}{}\n", "frame", "pairs",
+                                     "least distance", "ms", verified ? "  missed   wrong" : "");
+                     print((first ? names : "") + row_of(frame, record));
+                   });
+    if (json) json->finish();
+    if (csv) csv->finish();
+    if (table) {
+      const FrameTimes times = summary_of(ms);
+      std::string end =
+          fmt::format("\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms\n",
+                      times.median, times.p95, times.max);
+      if (verified) end += verdict_text(sum) + "\n" + accounting_sum(sum);
+      print(end);
+    }
+    if (sum.holds()) return kExitDone;
+    complain_broken(verdict_text(sum));
     return kExitBroken;
   }
 

@@ -40,27 +40,6 @@ std::string bar_of(const StudiesProgress& p) {
                      p.point, p.stage.empty() ? "" : ": " + p.stage);
 }
 
-// Progress without a terminal: a line when a study begins, and at most one every half minute.
-class PlainProgress {
- public:
-  void show(const StudiesProgress& p) {
-    const auto now = std::chrono::steady_clock::now();
-    if (p.study == study_ && now - last_ < std::chrono::seconds(30)) return;
-    study_ = p.study;
-    last_ = now;
-    try {
-      print(fmt::format("{}: {} of {}{}\n", p.study, p.done, counted(p.points, "point", "points"),
-                        left_text(p)));
-    } catch (const Error&) {
-      // The measurement continues if the progress cannot be written.
-    }
-  }
-
- private:
-  std::string study_;
-  std::chrono::steady_clock::time_point last_;
-};
-
 constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 class StudiesCommand {
@@ -187,12 +166,20 @@ class StudiesCommand {
 
     TerminalProgress terminal;
     const Progress line = terminal.callback();
-    PlainProgress plain;
+    std::string shown;
+    std::chrono::steady_clock::time_point last;
     const StudiesSummary summary = run_studies(request, [&](const StudiesProgress& p) {
-      if (line) {
-        line(bar_of(p));
-      } else {
-        plain.show(p);
+      if (line) return line(bar_of(p));
+      // Without a terminal: a line when a study begins, and at most one every half minute.
+      const auto now = std::chrono::steady_clock::now();
+      if (p.study == shown && now - last < std::chrono::seconds(30)) return;
+      shown = p.study;
+      last = now;
+      try {
+        print(fmt::format("{}: {} of {}{}\n", p.study, p.done, counted(p.points, "point", "points"),
+                          left_text(p)));
+      } catch (const Error&) {
+        // The measurement continues if the progress cannot be written.
       }
     });
     terminal.clear();

@@ -19,6 +19,7 @@
 #include <sstream>
 
 #include "core/base/bytes.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

@@ -34,29 +34,6 @@ namespace {
 // intervals of fattened triangles and of solids with random floats. verify/kernel_check makes the
 // cases and counts the losses.
 
-// Runs a probe and measures how much was lost. The probe fails if anything was lost, if answers are
-// loose too often, if nothing was checked, or if it breaks off with an Error.
-ProbeResult result(const std::string& name, const std::string& tried,
-                   const std::function<KernelTally()>& run) {
-  ProbeResult out{.assumption = "A4", .name = name, .unit = "lost", .note = {}};
-  try {
-    const KernelTally t = run();
-    const bool loose = static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
-    out.measured = static_cast<double>(t.lost);
-    out.samples = t.checked;
-    out.pass = t.checked > 0 && t.lost == 0 && !loose;
-    out.note = tried;
-    if (t.ordinary > 0) {
-      out.note += "; " + std::to_string(t.loose) + " of " + std::to_string(t.ordinary) +
-                  " ordinary ones wider than exact by 0.1 px" + (loose ? ": TOO MANY" : "");
-    }
-  } catch (const Error& error) {
-    out.note = error.what();
-    out.broke_off = true;
-  }
-  return out;
-}
-
 // Checks fattened triangles of every kind, then (`direct`) solids with random floats.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
@@ -235,8 +212,26 @@ std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
       "to fail; each is seen behind itself, by the programs with flags and with queries, in both "
       "depth formats";
   std::vector<ProbeResult> out;
-  for (const SolidKernel& kernel : solid_kernels())
-    out.push_back(result(kernel.name, tried, [&] { return solids(context, options, kernel); }));
+  for (const SolidKernel& kernel : solid_kernels()) {
+    out.push_back({.assumption = "A4", .name = kernel.name, .unit = "lost", .note = {}});
+    ProbeResult& of = out.back();
+    try {
+      const KernelTally t = solids(context, options, kernel);
+      const bool loose =
+          static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
+      of.measured = static_cast<double>(t.lost);
+      of.samples = t.checked;
+      of.pass = t.checked > 0 && t.lost == 0 && !loose;
+      of.note = tried;
+      if (t.ordinary > 0) {
+        of.note += "; " + std::to_string(t.loose) + " of " + std::to_string(t.ordinary) +
+                   " ordinary ones wider than exact by 0.1 px" + (loose ? ": TOO MANY" : "");
+      }
+    } catch (const Error& error) {
+      of.note = error.what();
+      of.broke_off = true;
+    }
+  }
   return out;
 }
 

@@ -37,8 +37,9 @@ struct KernelProbeOptions {
   bool late_stores = false;  // stores another solid than the one it asks about
 };
 
-/// Probes solid_interval of both offsets. All functions here make the context current while they
-/// run.
+/// Probes solid_interval of both offsets. A probe fails if anything was lost, if answers are loose
+/// too often, if nothing was checked, or if it breaks off with an Error. All functions here make
+/// the context current while they run.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
