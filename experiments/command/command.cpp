@@ -198,6 +198,17 @@ Scene read_scene(const SceneArguments& arguments, bool self) {
   return scene;
 }
 
+std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
+    const SceneArguments& arguments, bool self) {
+  return [&arguments, self](const TakePart& take) {
+    return stream_scene(arguments, [&](Scene& part) {
+      if (self) make_self(part);
+      take(part);
+      say_notes();
+    });
+  };
+}
+
 void complain_broken(const std::string& message) {
   std::fputs(coloured(complaint(message), Colour::bad, STDERR_FILENO).c_str(), stderr);
 }

@@ -25,6 +25,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
+#include "verify/certificate/certificate.h"
 
 namespace CLI {
 class App;
@@ -107,11 +108,7 @@ Command declare(CLI::App& parent, const Arguments&... arguments) {
   return {command->add_to(parent), [command] { return command->run(); }};
 }
 
-// The commands of the program. Exit status 1 means, by command: run, verify, compare: a guarantee
-// is broken. bench: two contestants disagree. clash: a pair of parts has a verdict of --fail-on, or
-// was not examined. distance: the accounting found a nearer pair or a wrong answer, or the reliable
-// diagram lost a nearest object. doctor: an assumption does not hold on the device. check: refuted,
-// or not proved. picture, report: a guarantee is broken.
+// The commands of the program. The --help of each says what exit status 1 means.
 Command add_run(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_plan(CLI::App& app);
@@ -179,6 +176,9 @@ void say_notes();
 
 /// load_scene() and say_notes(); then make_self() if `self` is set.
 Scene read_scene(const SceneArguments& arguments, bool self = false);
+/// The same for stream_scene(), which gives the scene part by part. The arguments must outlive it.
+std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
+    const SceneArguments& arguments, bool self);
 
 /// As complain(), in red on a terminal: for a guarantee that is broken.
 void complain_broken(const std::string& message);
@@ -313,11 +313,40 @@ struct CheckArguments {
   bool verified = false;  // the proved checker must agree; goes with certificates of one scene
 };
 
-/// Prints the verdict; with frames one verdict per frame and one for all, and likewise with tiles.
-/// Returns 0 if proved, and if a given list is the proved one; else 1. Throws Error if the
-/// certificate, the scene or the list cannot be read, and if the list has frames but the arguments
-/// name none, or the reverse.
+/// Precondition: a certificate or a list is given. Prints the verdict; with frames one verdict per
+/// frame and one for all, and likewise with tiles. Returns 0 if proved, and if a given list is the
+/// proved one; else 1. Throws Error if the certificate, the scene or the list cannot be read, and
+/// if the list has frames but the arguments name none, or the reverse.
 int run_check(const CheckArguments& arguments);
+
+/// The largest certificate or list that is read.
+constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
+
+Certificate read_certificate(const std::string& path);
+
+/// Replaces what a terminal cannot show, line by line.
+std::string clean_lines(const std::string& text);
+
+/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
+using TakeWord = std::function<void(std::uint64_t)>;
+
+/// Gives the certificates and the scene to the checker that Coq has proved
+/// (verify/certificate/coq): `farcull-check-verified`, which is in the folder of this program or in
+/// the PATH. Prints the SHA-256 of the files as this program has them, then the output of the
+/// checker: the same SHA-256, and its verdict. words: gives the words of the scene; status: the
+/// result of this checker. Throws Error if the other one cannot be run, or if they do not agree
+/// whether this is proved.
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status);
+
+/// Checks certificates of tiles in turn, each with the triangles that meet its tile. So the memory
+/// is that of the largest part of the scene and of one tile. whole: these must be all tiles, in
+/// order. Prints the verdict and returns the exit status, as run_check().
+int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
+
+/// Gives all words of a scene, or those of its coordinates alone.
+void give_words(const Scene& scene, const TakeWord& take);
+void give_coordinates(const Scene& scene, const TakeWord& take);
 
 // ---- `farcull picture` ----
 

@@ -91,10 +91,11 @@ std::string table_of_values(const DeclaredCommand& program) {
   return out;
 }
 
-// The functions that read the tables.
-std::string shared_tables(const DeclaredCommand& program) {
-  return fmt::format(
-      R"sh(# _farcull_words COMMAND: sets what may follow the command.
+// The tables, the functions that read them, and what bash calls.
+std::string bash_script(const DeclaredCommand& program) {
+  return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
+         fmt::format(
+             R"sh(# _farcull_words COMMAND: sets what may follow the command.
 _farcull_words() {{
   below='' flags='' first='' others=''
   case $1 in
@@ -140,12 +141,8 @@ _farcull_read() {{
   fi
 }}
 )sh",
-      table_of_words(program), table_of_values(program));
-}
-
-std::string bash_script(const DeclaredCommand& program) {
-  return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
-         shared_tables(program) + R"sh(
+             table_of_words(program), table_of_values(program)) +
+         R"sh(
 _farcull() {
   local current='' candidates='' line=${COMP_LINE:0:COMP_POINT} word prefix='' kind path
   local mesh='\.([oO][bB][jJ]|[oO][fF][fF]|[pP][lL][yY]|[sS][tT][lL]|json|(obj|off|ply|stl)\.gz)$'

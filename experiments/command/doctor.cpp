@@ -194,13 +194,6 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
   return out;
 }
 
-std::string verdict_text(const DeviceVerdict& verdict) {
-  return fmt::format("\nfar: {}; {}\n", to_string(verdict),
-                     !verdict.file.empty()  ? "kept in " + verdict.file
-                     : verdict.note.empty() ? "not kept"
-                                            : "not kept: " + verdict.note);
-}
-
 Json probes_json(const std::vector<ProbeResult>& probes) {
   return json_list(probes, [](const ProbeResult& p) {
     Json out = FARCULL_JSON(p, assumption, name, pass, measured, bound, unit, samples, note);
@@ -331,7 +324,13 @@ class DoctorCommand {
           {"verdict_file", verdict.file}};
       write_report(std::move(report), pass, json);
     }
-    if (people) print(probes_table(probes) + verdict_text(verdict));
+    if (people) {
+      print(probes_table(probes) + fmt::format("\nfar: {}; {}\n", to_string(verdict),
+                                               !verdict.file.empty() ? "kept in " + verdict.file
+                                               : verdict.note.empty()
+                                                   ? "not kept"
+                                                   : "not kept: " + verdict.note));
+    }
     return pass ? 0 : 1;
   }
 

@@ -240,13 +240,11 @@ class RunCommand {
     needs_pairs("--segments", segments_, "adds columns to");
     needs_pairs("--kinds", kinds_.has_value(), "chooses the rows of");
     if (!outputs_.certificate) return;
-    const auto refuse = [](const std::string& option, bool given) {
-      if (!given) return;
-      throw Error(option, "a certificate is about all colliding pairs of all objects",
-                  "leave " + option + " or --certificate out");
-    };
-    for (const char* name : {"ignore", "ignore_file", "only", "limit"})
-      refuse(option_word(name), options_.has(name));
+    for (const char* name : {"ignore", "ignore_file", "only", "limit"}) {
+      if (!options_.has(name)) continue;
+      throw Error(option_word(name), "a certificate is about all colliding pairs of all objects",
+                  "leave " + option_word(name) + " or --certificate out");
+    }
   }
   PairColumns columns() const {
     return {.faces = faces_,
@@ -329,14 +327,8 @@ class RunCommand {
     TerminalProgress terminal;
     const Progress progress = terminal.callback();
     Session session(options.device);
-    const SceneSource source = [this](const TakePart& take) {
-      return stream_scene(scene_, [&](Scene& part) {
-        if (options_.has("self")) make_self(part);
-        take(part);
-        say_notes();
-      });
-    };
-    const TileRun tile = farcull::run_tile(source, question, session, progress);
+    const TileRun tile = farcull::run_tile(scene_in_parts(scene_, options_.has("self")), question,
+                                           session, progress);
     terminal.clear();
     require_pairs(nothing_to_test(tile.census), with_self());
     require_asked(tile.census.objects, tile.census.self_objects > 0, tile.ignored.size(), "SCENE",
@@ -347,13 +339,12 @@ class RunCommand {
       write_output(*outputs.certificate,
                    to_text(certificate_of(tile.part.scene, tile.record, &whole)));
     }
-    std::optional<TileList> list;
+    std::optional<TileList> list;  // what the record says about the file of pairs
     if (outputs.pairs) {
-      list = TileList{.text = tile_list(tile, chosen), .file = {}, .columns = chosen};
-      write_output(*outputs.pairs, list->text);
-      const bool both = outputs.json && *outputs.json != "-" && *outputs.pairs != "-";
-      if (both) list->file = beside(*outputs.pairs, *outputs.json);
-      if (!both) list.reset();
+      const std::string text = tile_list(tile, chosen);
+      write_output(*outputs.pairs, text);
+      if (outputs.json && *outputs.json != "-" && *outputs.pairs != "-")
+        list = TileList{text, beside(*outputs.pairs, *outputs.json), chosen};
     }
     if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
     if (!outputs.to_stdout())

@@ -1,6 +1,6 @@
 // The scene is written as 64-bit words, lowest byte first, so that the proved checker needs no
 // reader of meshes: the number of objects, the sizes of the objects, then all coordinates.
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -15,7 +15,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "core/base/bytes.h"
@@ -59,15 +58,6 @@ class WordFile {
   Sha256 hash_;
 };
 
-std::string sha256_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  Sha256 hash;
-  std::string block(std::size_t{1} << 16, '\0');
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    hash.add(std::string_view(block).substr(0, static_cast<std::size_t>(file.gcount())));
-  return hash.digest();
-}
-
 // Throws Error unless the checker's output is about these files, and its verdict fits its exit
 // status. So another program in its place, or other files, prove nothing.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
@@ -102,7 +92,7 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   const bool written = std::fflush(file) == 0 && std::ferror(file) == 0;
   std::vector<std::string> hashes;
   for (const std::string& certificate : certificates) {
-    hashes.push_back(sha256_of_file(certificate));
+    hashes.push_back(sha256(read_file(certificate, kMaxCheckedBytes)));
     print("checked    certificate sha256 " + hashes.back() + "\n");
   }
   const std::string scene = out.digest();
