@@ -1,7 +1,4 @@
 // Options of `farcull bench`, and its run.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 

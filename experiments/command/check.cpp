@@ -9,7 +9,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string_view>
 
 #include "core/base/floating_point.h"
 #include "experiments/measure/frames.h"

@@ -65,34 +65,6 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
           .note = {}};
 }
 
-// Tests Lemmas 1 and 2 on the native canvas, with both offsets.
-std::vector<ProbeResult> lemma_probes() {
-  LemmaSettings settings;
-  settings.points = kPoints;
-  settings.seed = kSeed;
-  settings.displace = true;
-  settings.radius = [](const Budget& budget, double) { return budget.radius(); };
-  LemmaRow sum;
-  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
-    NativeCanvas canvas(fattener.mode, fattener.solid);
-    const LemmaRow total = lemma_total(lemma_experiment(canvas, fattener, settings));
-    sum.points += total.points;
-    sum.no_sample += total.no_sample;
-    sum.not_bounding += total.not_bounding;
-  }
-  const auto result = [&sum](const char* assumption, const char* name, std::uint64_t found) {
-    return ProbeResult{.assumption = assumption,
-                       .name = name,
-                       .measured = static_cast<double>(found),
-                       .unit = "points",
-                       .samples = sum.points,
-                       .pass = sum.points > 0 && found == 0,
-                       .note = {}};
-  };
-  return {result("A3", "points of triangles whose pixel got no sample", sum.no_sample),
-          result("A5", "points that their samples do not bound", sum.not_bounding)};
-}
-
 using Json = nlohmann::ordered_json;
 
 // The device that GlContext would use for this option. The list says why the others fail.
@@ -218,7 +190,31 @@ std::vector<ProbeResult> native_probes() {
       for (const SolidKernel& kernel : solid_kernels()) out.push_back(probe_kernel(kernel, target));
     }
   }
-  for (ProbeResult& r : lemma_probes()) out.push_back(std::move(r));
+  // Lemmas 1 and 2 on the native canvas.
+  LemmaSettings settings;
+  settings.points = kPoints;
+  settings.seed = kSeed;
+  settings.displace = true;
+  settings.radius = [](const Budget& budget, double) { return budget.radius(); };
+  LemmaRow sum;
+  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
+    NativeCanvas canvas(fattener.mode, fattener.solid);
+    const LemmaRow total = lemma_total(lemma_experiment(canvas, fattener, settings));
+    sum.points += total.points;
+    sum.no_sample += total.no_sample;
+    sum.not_bounding += total.not_bounding;
+  }
+  const auto add = [&](const char* assumption, const char* name, std::uint64_t found) {
+    out.push_back({.assumption = assumption,
+                   .name = name,
+                   .measured = static_cast<double>(found),
+                   .unit = "points",
+                   .samples = sum.points,
+                   .pass = sum.points > 0 && found == 0,
+                   .note = {}});
+  };
+  add("A3", "points of triangles whose pixel got no sample", sum.no_sample);
+  add("A5", "points that their samples do not bound", sum.not_bounding);
   return out;
 }
 

@@ -86,7 +86,19 @@ class ScenesCommand {
         throw Error("--write", "no scene is named",
                     "name one, as in farcull scenes two-spheres --write DIR");
       }
-      list(checked(outputs_, {}));
+      const Outputs outputs = checked(outputs_, {});
+      Json all = Json::array();
+      Table table("lrrrl");
+      table.add({"scene", "objects", "triangles", "seed", ""});
+      for (const BuiltinScene& scene : builtin_scenes()) {
+        table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
+                   scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
+        all.push_back(to_json(scene));
+      }
+      if (outputs.json) write_json(all, *outputs.json);
+      if (!outputs.to_stdout()) {
+        print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
+      }
       return 0;
     }
     parse_scene_name(*name_);
@@ -112,21 +124,6 @@ class ScenesCommand {
   }
 
  private:
-  void list(const Outputs& outputs) const {
-    Json all = Json::array();
-    Table table("lrrrl");
-    table.add({"scene", "objects", "triangles", "seed", ""});
-    for (const BuiltinScene& scene : builtin_scenes()) {
-      table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
-                 scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
-      all.push_back(to_json(scene));
-    }
-    if (outputs.json) write_json(all, *outputs.json);
-    if (!outputs.to_stdout()) {
-      print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
-    }
-  }
-
   Text name_, folder_;
   Outputs outputs_;
 };

@@ -30,34 +30,6 @@ constexpr const char* kRemedy =
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
 
-std::string program() {
-  std::error_code error;
-  const std::filesystem::path beside =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
-  return std::filesystem::exists(beside, error) ? beside.string() : kProgram;
-}
-
-// Writes words, lowest byte first, and hashes them.
-class WordFile {
- public:
-  explicit WordFile(std::FILE* file) : file_(file) {}
-  void add(std::uint64_t word) {
-    for (int k = 0; k < 8; ++k, word >>= 8) block_ += static_cast<char>(word);
-    if (block_.size() >= (std::size_t{1} << 16)) flush();
-  }
-  void flush() {
-    std::fwrite(block_.data(), 1, block_.size(), file_);
-    hash_.add(block_);
-    block_.clear();
-  }
-  std::string digest() { return hash_.digest(); }
-
- private:
-  std::FILE* file_;
-  std::string block_;
-  Sha256 hash_;
-};
-
 // Throws Error unless the checker's output is about these files, and its verdict fits its exit
 // status. So another program in its place, or other files, prove nothing.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
@@ -86,20 +58,32 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   const int memory = ::memfd_create("scene", 0);
   std::FILE* file = memory < 0 ? nullptr : ::fdopen(memory, "wb");
   if (file == nullptr) refuse(std::string("no file in memory: ") + std::strerror(errno));
-  WordFile out(file);
-  words([&](std::uint64_t word) { out.add(word); });
-  out.flush();
+  Sha256 hash;
+  std::string block;
+  const auto flush = [&] {
+    std::fwrite(block.data(), 1, block.size(), file);
+    hash.add(block);
+    block.clear();
+  };
+  words([&](std::uint64_t word) {
+    for (int k = 0; k < 8; ++k, word >>= 8) block += static_cast<char>(word);
+    if (block.size() >= (std::size_t{1} << 16)) flush();
+  });
+  flush();
   const bool written = std::fflush(file) == 0 && std::ferror(file) == 0;
   std::vector<std::string> hashes;
   for (const std::string& certificate : certificates) {
     hashes.push_back(sha256(read_file(certificate, kMaxCheckedBytes)));
     print("checked    certificate sha256 " + hashes.back() + "\n");
   }
-  const std::string scene = out.digest();
+  const std::string scene = hash.digest();
   print("checked    scene       sha256 " + scene + "\n");
   std::fflush(stdout);
 
-  std::string path = program();
+  std::error_code none;
+  const std::filesystem::path beside =
+      std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kProgram;
+  std::string path = std::filesystem::exists(beside, none) ? beside.string() : kProgram;
   std::vector<std::string> given = certificates;
   given.push_back("/proc/self/fd/" + std::to_string(memory));
   std::string option = "--tiles";
@@ -127,11 +111,11 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   int status = 0;
   std::string said;
   if (error == 0) {
-    std::array<char, 4096> block;
-    for (ssize_t size = 0; (size = ::read(pipe[0], block.data(), block.size())) != 0;) {
+    std::array<char, 4096> some;
+    for (ssize_t size = 0; (size = ::read(pipe[0], some.data(), some.size())) != 0;) {
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) break;
-      said.append(block.data(), static_cast<std::size_t>(size));
+      said.append(some.data(), static_cast<std::size_t>(size));
     }
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

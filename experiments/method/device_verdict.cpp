@@ -82,21 +82,18 @@ constexpr std::array kDriverVariables = {
     "TU_",    "V3D_",     "VC4_",     "PAN_",     "LIMA_",  "ETNA_", "SVGA_", "VIRGL_",
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
 
-// Mesa also reads each driconf option from the environment variable of its name, in lower case.
-// Other variables in lower case are rare, except those of proxies.
-bool may_be_driconf(const std::string& variable) {
-  const std::string name = variable.substr(0, variable.find('='));
-  return std::none_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) &&
-         name != "_" && !name.ends_with("_proxy");
-}
-
 std::string driver_environment() {
   std::vector<std::string> found;
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
-    if (may_be_driconf(variable) || std::ranges::any_of(kDriverVariables, named))
-      found.push_back(variable);
+    // Mesa also reads each driconf option from the environment variable of its name, in lower case.
+    // Other variables in lower case are rare, except those of proxies.
+    const std::string name = variable.substr(0, variable.find('='));
+    const bool may_be_driconf =
+        std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }) && name != "_" &&
+        !name.ends_with("_proxy");
+    if (may_be_driconf || std::ranges::any_of(kDriverVariables, named)) found.push_back(variable);
   }
   std::sort(found.begin(), found.end());
   std::string out;

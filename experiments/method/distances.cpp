@@ -134,18 +134,6 @@ std::uint64_t count_of_questions(const Scene& scene) {
   return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
-// Refuses too many pairs of objects: each takes memory from the start, and more for its answer.
-void require_few_questions(const Scene& scene, const DistanceOptions& options) {
-  if (options.pairs != DistancePairs::objects || std::isfinite(options.within)) return;
-  const std::uint64_t questions = count_of_questions(scene);
-  if (questions <= options.most_pairs) return;
-  throw Error("scene",
-              "has " + std::to_string(questions) + " pairs of objects, and at most " +
-                  std::to_string(options.most_pairs) + " are answered",
-              "ask for the nearest objects of each ({pairs} nearest), or for the triangles within "
-              "a distance ({pairs} all {within} D)");
-}
-
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
                                                    std::span<const NearHint> hints) {
   if (hints.empty()) return {};
@@ -432,7 +420,17 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   check(options);
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
-  require_few_questions(scene, options);
+  // Each pair of objects takes memory from the start, and more for its answer.
+  if (options.pairs == DistancePairs::objects && !std::isfinite(options.within)) {
+    const std::uint64_t questions = count_of_questions(scene);
+    if (questions > options.most_pairs) {
+      throw Error("scene",
+                  "has " + std::to_string(questions) + " pairs of objects, and at most " +
+                      std::to_string(options.most_pairs) + " are answered",
+                  "ask for the nearest objects of each ({pairs} nearest), or for the triangles "
+                  "within a distance ({pairs} all {within} D)");
+    }
+  }
   if (options.pairs == DistancePairs::nearest)
     require_nothing_ignored(scene, "the search for nearest objects");
   if (options.verify) require_nothing_ignored(scene, "the accounting of distances");

@@ -85,19 +85,6 @@ static_assert([] {
   return true;
 }());
 
-// Counts the triangles of the objects that are in a pair or are tested against themselves.
-std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
-  std::vector<std::uint8_t> in(scene.objects.size(), 0);
-  for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
-  std::uint64_t triangles = 0;
-  for (std::size_t o = 0; o < in.size(); ++o) {
-    const Object& object = scene.objects[o];
-    if (in[o] != 0 || (object.self && object.triangle_count > 1))
-      triangles += object.triangle_count;
-  }
-  return triangles;
-}
-
 Stage sweep_stage(const Scene& scene) {
   return {.kind = StageKind::sweep,
           .ran = true,
@@ -199,7 +186,14 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   out.triangles = std::move(result.triangles);
   out.triangle_count = out.triangles.size();
   out.object_count = count_objects(scene, out.triangles);
-  const std::uint64_t swept = triangles_of(scene, result.object_pairs);
+  // The triangles of the objects that are in a pair or are tested against themselves.
+  std::vector<std::uint8_t> in(scene.objects.size(), 0);
+  for (const TrianglePair& pair : result.object_pairs) in[pair.a] = in[pair.b] = 1;
+  std::uint64_t swept = 0;
+  for (std::size_t o = 0; o < in.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (in[o] != 0 || (object.self && object.triangle_count > 1)) swept += object.triangle_count;
+  }
   out.by = SweptObjects{swept};
   Stage stage = sweep_stage(scene);
   stage.n = result.counts.objects;
