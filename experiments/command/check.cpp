@@ -38,13 +38,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The clearance to check: --clearance, or the clearance of the certificate. If there are several
-// frames, the caller gives the first frame's certificate, so that all frames answer one question.
-double clearance_of(const CheckArguments& arguments,
-                    const std::optional<Certificate>& certificate) {
-  return arguments.clearance.value_or(certificate ? certificate->clearance : 0);
-}
-
 GivenList read_list(const CheckArguments& arguments) {
   GivenList list =
       read_pair_list(read_file(arguments.pairs, kMaxCheckedBytes), clean_name(arguments.pairs));
@@ -107,8 +100,9 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   const Scene scene = read_scene(arguments.scene, arguments.self);
   require_asked(scene, {});
   SceneCheck done = check_scene_with(
-      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
-      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+      arguments.clearance.value_or(certificate ? certificate->clearance : 0),
+      clean_name(arguments.certificate), certificate, scene, list,
+      list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   if (certificate && done.result.verdict == Verdict::not_proved)
     done.result.reason += order_of(arguments.scene.names, scene, certificate->scene.hash);
   const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
@@ -153,7 +147,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   }
   FrameVerdicts verdicts;
   SceneCheck last;
-  std::optional<double> clearance;
+  std::optional<double> clearance = arguments.clearance;
   bool self = false, ignores = false;
   std::string not_asked;
   for_each_frame(range, "their verdicts are given", {}, "", [&](long frame, const Progress&) {
@@ -173,7 +167,8 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     self = self || has_self(scene);
     ignores = ignores || !scene.ignored.empty();
-    if (!clearance) clearance = clearance_of(arguments, certificate);
+    // All frames answer one question: that of the first one's certificate.
+    if (!clearance) clearance = certificate ? certificate->clearance : 0;
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     const CheckResult& result = last.result;

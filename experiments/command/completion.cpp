@@ -16,17 +16,6 @@
 namespace farcull {
 namespace {
 
-// The words of "fragment|fixed", without placeholders such as N or A:B.
-std::vector<std::string> alternatives(const std::string& type) {
-  std::vector<std::string> out;
-  if (type.find('|') == std::string::npos) return out;
-  for (const auto word : std::views::split(type, '|')) {
-    const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
-    if (std::ranges::none_of(word, capital)) out.emplace_back(word.begin(), word.end());
-  }
-  return out;
-}
-
 std::string joined(const std::vector<std::string>& words, const char* between = " ") {
   return fmt::format("{}", fmt::join(words, between));
 }
@@ -43,8 +32,15 @@ std::string completion_words(const std::string& type) {
   if (type == "SHELL") return "bash";
   if (type == "FILE" || type == "CERTIFICATE" || type == "SHARDS") return "@files";
   if (type == "DIR") return "@folders";
-  if (type != "SCENE" && type != "NAME") return joined(alternatives(type));
   std::vector<std::string> words;
+  if (type != "SCENE" && type != "NAME") {
+    if (type.find('|') == std::string::npos) return "";
+    for (const auto word : std::views::split(type, '|')) {  // without placeholders: N, A:B
+      const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
+      if (std::ranges::none_of(word, capital)) words.emplace_back(word.begin(), word.end());
+    }
+    return joined(words);
+  }
   for (const BuiltinScene& scene : builtin_scenes()) words.push_back(scene.name);
   if (type == "SCENE") words.emplace_back("@meshes");
   return joined(words);

@@ -37,19 +37,6 @@ std::string store_of(const std::string& folder) {
   throw Error(folder, "holds no results.sqlite", remedy);
 }
 
-// The report replaces everything in its folder, so the store must be elsewhere.
-void check_store_outside(const std::string& folder) {
-  std::error_code error;
-  const auto place = [&](const std::string& path) {
-    return fs::weakly_canonical(path, error).string();
-  };
-  const std::string report = place(folder + "/report");
-  if (!error && place(store_path(folder)).starts_with(report + "/")) {
-    throw Error(store_path(folder), "leads into DIR/report, which the report replaces",
-                "move the results out of it");
-  }
-}
-
 // JSON about this program for the Python program.
 std::string context_for_python() {
   Json known = Json::array(), scenes = Json::object();
@@ -93,7 +80,16 @@ class ReportCommand {
   int run() {
     if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
     while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
-    check_store_outside(folder_);
+    // The report replaces everything in its folder, so the store must be elsewhere.
+    std::error_code error;
+    const auto place = [&](const std::string& path) {
+      return fs::weakly_canonical(path, error).string();
+    };
+    const std::string report = place(folder_ + "/report");
+    if (!error && place(store_path(folder_)).starts_with(report + "/")) {
+      throw Error(store_path(folder_), "leads into DIR/report, which the report replaces",
+                  "move the results out of it");
+    }
     std::vector<std::string> words = {"-B", report_folder(FARCULL_REPORT_FOLDER), folder_};
     {
       const Store store(store_of(folder_), Store::Access::read);

@@ -136,16 +136,6 @@ std::string beside(const std::string& file, const std::string& record) {
       .string();
 }
 
-// Refuses a name that a record cannot hold: a record is UTF-8.
-void require_text(const std::string& option, const std::string& file) {
-  try {
-    static_cast<void>(nlohmann::json(file).dump());
-  } catch (const nlohmann::json::exception&) {
-    throw Error(option, "the name of the file is no UTF-8, and the record has to hold it",
-                "choose another name");
-  }
-}
-
 // verify requires the guarantee of every method; plan prints what run would do.
 class RunCommand {
  public:
@@ -322,7 +312,14 @@ class RunCommand {
     refuse_outputs();
     const Outputs outputs = checked(outputs_, read_files());
     const PairColumns chosen = columns();
-    if (outputs.pairs && outputs.json) require_text("--pairs", *outputs.pairs);
+    if (outputs.pairs && outputs.json) {
+      try {  // a record is UTF-8
+        static_cast<void>(nlohmann::json(*outputs.pairs).dump());
+      } catch (const nlohmann::json::exception&) {
+        throw Error("--pairs", "the name of the file is no UTF-8, and the record has to hold it",
+                    "choose another name");
+      }
+    }
     if (leaves_out()) question.ignored = [this](const Scene& scene) { return left_out(scene); };
     TerminalProgress terminal;
     const Progress progress = terminal.callback();

@@ -30,10 +30,6 @@
 namespace farcull {
 namespace {
 
-// The probes of A4 (docs/reliability.md). For both offsets the canvas's fragment program computes
-// intervals of fattened triangles and of solids with random floats. verify/kernel_check makes the
-// cases and counts the losses.
-
 // Checks fattened triangles of every kind, then (`direct`) solids with random floats.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
