@@ -151,7 +151,10 @@ class RunCommand {
     return add_command(app, name, title, rows + output_rows(), examples);
   }
   int run() const {
-    const RunOptions options = parse();
+    RunOptions options{.verify = !no_verify_, .seed = seed_of(scene_.names)};
+    if (contacts_ || kinds_) options.contacts = ContactDetail::kinds;
+    if (segments_) options.contacts = ContactDetail::segments;
+    options = read_options(options_.given(), options);
     check_scene(scene_.names);
     if (kind_ == Kind::plan) return plan(options);
     if (tiles_) return run_tile(options);
@@ -166,13 +169,6 @@ class RunCommand {
   }
 
  private:
-  // The options of the method. Throws Error if one is bad, or if some exclude each other.
-  RunOptions parse() const {
-    RunOptions out{.verify = !no_verify_, .seed = seed_of(scene_.names)};
-    if (contacts_ || kinds_) out.contacts = ContactDetail::kinds;
-    if (segments_) out.contacts = ContactDetail::segments;
-    return read_options(options_.given(), out);
-  }
   Rows output_rows() {
     const OptionRow json = {"--json", &outputs_.json, "FILE", kJsonHelp};
     if (kind_ == Kind::plan) return {json};

@@ -102,16 +102,6 @@ namespace {
 // Pairs of triangles that one thread decides at a time.
 constexpr std::size_t kTogether = 256;
 
-void check(const DistanceOptions& options) {
-  if (!(options.within >= 0))
-    throw Error("within", "is no distance", "give a number of world units, 0 or more");
-  if (options.pairs == DistancePairs::all && !std::isfinite(options.within))
-    throw Error("within", "is not finite, which pairs of all triangles need",
-                "give a finite number of world units");
-  if (options.pairs == DistancePairs::nearest && options.k == 0)
-    throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
-}
-
 std::vector<ObjectPair> every_two_objects(const Scene& scene) {
   std::vector<ObjectPair> out;
   const auto count = static_cast<std::uint32_t>(scene.objects.size());
@@ -417,7 +407,13 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
 
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress, DistanceMemory* memory) {
-  check(options);
+  if (!(options.within >= 0))
+    throw Error("within", "is no distance", "give a number of world units, 0 or more");
+  if (options.pairs == DistancePairs::all && !std::isfinite(options.within))
+    throw Error("within", "is not finite, which pairs of all triangles need",
+                "give a finite number of world units");
+  if (options.pairs == DistancePairs::nearest && options.k == 0)
+    throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
   // Each pair of objects takes memory from the start, and more for its answer.
