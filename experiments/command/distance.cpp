@@ -41,7 +41,7 @@ constexpr const char* kDistanceExamples =
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
 
-std::string row_of(long frame, const DistanceRecord& record) {
+std::string frame_row(long frame, const DistanceRecord& record) {
   const auto least = std::ranges::min_element(record.distances, {},
                                               [](const Distance& d) { return d.closest.distance; });
   std::string row = fmt::format("{:>8}  {:>10}  ", frame, record.distances.size());
@@ -219,7 +219,7 @@ class DistanceCommand {
                      const std::string names =
                          fmt::format("{:>8}  {:>10}  {:>24}  {:>9}{}\n", "frame", "pairs",
                                      "least distance", "ms", verified ? "  missed   wrong" : "");
-                     print((first ? names : "") + row_of(frame, record));
+                     print((first ? names : "") + frame_row(frame, record));
                    });
     if (json) json->finish();
     if (csv) csv->finish();
