@@ -1,6 +1,6 @@
 // Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
 // finds.
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 #include <fmt/format.h>
 
@@ -8,27 +8,17 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
 #include <sstream>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
 
-#include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "experiments/tiles/run_tile.h"
-#include "verify/certificate/certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -44,24 +34,9 @@ std::string clean_lines(const std::string& text) {
   return out;
 }
 
-void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
-                 const std::function<void(const TakeWord&)>& words, int status) {
-  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
-  if ((verified == kExitDone) == (status == kExitDone)) return;
-  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
-              "keep the certificate and the scene, and report them: one of the checkers is wrong");
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The clearance to check: --clearance, or the clearance of the certificate. If there are several
-// frames, the caller gives the first frame's certificate, so that all frames answer one question.
-double clearance_of(const CheckArguments& arguments,
-                    const std::optional<Certificate>& certificate) {
-  return arguments.clearance.value_or(certificate ? certificate->clearance : 0);
-}
 
 GivenList read_list(const CheckArguments& arguments) {
   GivenList list =
@@ -86,19 +61,6 @@ GivenList read_list(const CheckArguments& arguments) {
   }
   std::ranges::stable_sort(list.rows, {}, &ListedPair::frame);
   return list;
-}
-
-// Writes the result for one scene. The record is written last, so that there is none if the two
-// checkers disagree.
-int write_check(const CheckArguments& arguments, const Scene& scene, const SceneCheck& done) {
-  const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
-  if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
-  if (arguments.verified) {
-    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
-    check_again(arguments, {arguments.certificate}, words, status);
-  }
-  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
-  return status;
 }
 
 // The end of a reason: the meshes in the order whose hash the certificate names. Empty if no order
@@ -138,50 +100,21 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   const Scene scene = read_scene(arguments.scene, arguments.self);
   require_asked(scene, {});
   SceneCheck done = check_scene_with(
-      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
-      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+      arguments.clearance.value_or(certificate ? certificate->clearance : 0),
+      clean_name(arguments.certificate), certificate, scene, list,
+      list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   if (certificate && done.result.verdict == Verdict::not_proved)
     done.result.reason += order_of(arguments.scene.names, scene, certificate->scene.hash);
-  return write_check(arguments, scene, done);
+  const int status = done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (arguments.json != "-") print(clean_lines(check_text(scene, done)));
+  if (arguments.verified) {
+    const auto words = [&](const TakeWord& take) { give_words(scene, take); };
+    check_again(arguments, {arguments.certificate}, words, status);
+  }
+  // Written last, so that there is no record if the two checkers disagree.
+  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+  return status;
 }
-
-// The output of the checks of frames: a row of the table and an element of the record for each,
-// then the verdict in all.
-class FrameChecks {
- public:
-  FrameChecks(const CheckArguments& arguments, const std::string& names)
-      : table_(arguments.json != "-"), wanted_(arguments.frames->count()) {
-    if (!arguments.json.empty()) json_.emplace(arguments.json);
-    if (table_) print(names);
-  }
-
-  // row: the frame's row of the table.
-  void add(long frame, const Scene& scene, const SceneCheck& check, std::string row) {
-    const Verdict verdict = check.result.verdict;
-    verdicts_.add(frame, verdict, check.result.meeting.size());
-    if (table_) {
-      if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
-      print(clean_lines(row));
-    }
-    if (!json_) return;
-    Json one = {{"frame", frame}};
-    one.update(check_json(scene, check));
-    json_->add(Json::object(), one, verdicts_.json(wanted_));
-  }
-
-  // proved: the sentence if every frame is proved; rest: the text after it.
-  int finish(const std::string& proved, const std::string& rest) {
-    if (json_) json_->finish();
-    if (table_) print("\n" + clean_lines(verdicts_.text(proved) + rest));
-    return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
-  }
-
- private:
-  bool table_;
-  long wanted_;
-  std::optional<FrameRecord> json_;
-  FrameVerdicts verdicts_;
-};
 
 // The certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
@@ -205,10 +138,16 @@ Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
   const FrameRange range = *arguments.frames;
   FrameSource source(arguments.scene, range, arguments.self);
-  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame",
-                                            "verdict", "box pairs", "meeting", "ms"));
+  std::optional<FrameRecord> json;
+  if (!arguments.json.empty()) json.emplace(arguments.json);
+  const bool table = arguments.json != "-";
+  if (table) {
+    print(fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict", "box pairs",
+                      "meeting", "ms"));
+  }
+  FrameVerdicts verdicts;
   SceneCheck last;
-  std::optional<double> clearance;
+  std::optional<double> clearance = arguments.clearance;
   bool self = false, ignores = false;
   std::string not_asked;
   for_each_frame(range, "their verdicts are given", {}, "", [&](long frame, const Progress&) {
@@ -228,169 +167,176 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     self = self || has_self(scene);
     ignores = ignores || !scene.ignored.empty();
-    if (!clearance) clearance = clearance_of(arguments, certificate);
+    // All frames answer one question: that of the first one's certificate.
+    if (!clearance) clearance = certificate ? certificate->clearance : 0;
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     const CheckResult& result = last.result;
-    checks.add(
-        frame, scene, last,
-        fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
-                    grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
+    verdicts.add(frame, result.verdict, result.meeting.size());
+    if (table) {
+      std::string row = fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame,
+                                    to_string(result.verdict), grouped(result.found.box_pairs),
+                                    grouped(result.found.meeting), result.ms);
+      if (result.verdict != Verdict::proved) row += "         " + verdict_text(scene, last);
+      print(clean_lines(row));
+    }
+    if (!json) return;
+    Json one = {{"frame", frame}};
+    one.update(check_json(scene, last));
+    json->add(Json::object(), one, verdicts.json(range.count()));
   });
   const bool several = range.count() > 1 && !last.result.unattested.empty();
-  return checks.finish(
+  const std::string proved =
       fmt::format("these pairs {}, and no others",
                   *clearance == 0 ? "of the scene meet"
                                   : fmt::format("are at distance {} or less", *clearance)) +
-          proved_limits(*clearance, self, ignores),
-      not_asked + (several ? "of the last frame's run: " : "") + unattested_text(last));
-}
-
-// Requires a number in the name of the certificate if, and only if, frames or tiles are asked for.
-void require_number(const std::string& certificate, bool numbers) {
-  if (certificate.empty() || is_numbered(certificate) == numbers) return;
-  if (numbers) {
-    throw Error("CERTIFICATE", "'" + certificate + "' has no place for a number",
-                "put %d or %04d where the number of the frame or tile is in its name");
+      proved_limits(*clearance, self, ignores);
+  if (json) json->finish();
+  if (table) {
+    print("\n" + clean_lines(verdicts.text(proved) + not_asked +
+                             (several ? "of the last frame's run: " : "") + unattested_text(last)));
   }
-  throw Error("CERTIFICATE", "'" + certificate + "' has a place for a number",
-              "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
+  return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
 }
 
 class CheckCommand {
  public:
-  CLI::App* add_to(CLI::App& app);
-  int run();
+  CLI::App* add_to(CLI::App& app) {
+    return add_command(
+        app, "check", "prove or refute a certificate of a run, or a list of pairs",
+        Rows{{"CERTIFICATE", &arguments_.certificate, "",
+              "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
+              "alone"}} +
+            scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
+            Rows{{"--self", &arguments_.self, "",
+                  "every object was tested against itself, as by\nfarcull run --self"},
+                 ignore_row(arguments_.scene.ignore),
+                 {"--pairs", &pairs_, "FILE",
+                  "a list of pairs as farcull run --pairs writes it:\n"
+                  "is it right and complete? Columns are found by their\n"
+                  "names; rows may be in any order. With --tiles: the\n"
+                  "merged list, which must be equal byte for byte"},
+                 {"--clearance", &clearance_, "D",
+                  "the list is of pairs at this distance or less, in\n"
+                  "world units; default 0, or that of the certificate"},
+                 {"--frames", &frames_, "N|A:B",
+                  "check these frames, as of farcull run --frames: with\n"
+                  "a number (%d or %04d) in the name of CERTIFICATE and\n"
+                  "a column `frame` in the list"},
+                 {"--tiles", &tiles_, "N",
+                  "check the certificates of all N tiles of the scene\n(farcull run --tiles), with "
+                  "a number (%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
+                 {"--verified", &arguments_.verified, "",
+                  "the checker that Coq has proved must agree; a build has\nit where Coq is "
+                  "installed "
+                  "(docs/verified.md)"},
+                 {"--json", &json_, "FILE", kJsonHelp}},
+        "Examples:\n"
+        "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
+        "  farcull check c.json two-spheres --pairs pairs.csv\n"
+        "  farcull check two-spheres --pairs pairs.csv\n"
+        "  farcull run two-spheres --clearance 0.01 --certificate d.json\n"
+        "  farcull check d.json two-spheres\n"
+        "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
+        "  farcull check c_%04d.json two-spheres --frames 10\n"
+        "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
+        "  farcull check t%d.json two-tori --tiles 2\n\n"
+        "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
+        "no others; 1: refuted, or not proved, as for another scene; 2: what cannot be read.\n"
+        "Nothing is proved about the run: neither its method nor which pairs it kept. The file of "
+        "a\n"
+        "certificate, and its proof: docs/certificate.md.");
+  }
+  int run() {
+    CheckArguments& to = arguments_;
+    if (to.certificate.empty())
+      throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
+    if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
+    to.pairs = pairs_.value_or("");
+    if (frames_) to.frames = parse_frames(*frames_);
+    if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
+    // The scene may come first, and the certificate last: the text of the file decides.
+    const auto is_certificate = [&](const std::string& path) {
+      const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
+      std::string text(100, ' ');
+      if (std::filesystem::is_regular_file(file))
+        std::ifstream(file).read(text.data(), static_cast<std::streamsize>(text.size()));
+      return text.find("\"farcull-certificate\"") != std::string::npos;
+    };
+    if (!to.scene.names.empty() && !is_certificate(to.certificate) &&
+        is_certificate(to.scene.names.back())) {
+      to.scene.names.insert(to.scene.names.begin(), std::move(to.certificate));
+      to.certificate = std::move(to.scene.names.back());
+      to.scene.names.pop_back();
+    }
+    // If the first of several names is not a mesh, it names a certificate.
+    const bool mesh = has_mesh_extension(to.certificate);
+    if (!pairs_ && mesh) {
+      throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
+                  "name the certificate first, or give a list of pairs with --pairs FILE");
+    }
+    if (!pairs_ && to.scene.names.empty()) {
+      throw Error("SCENE", "is missing after '" + to.certificate + "'",
+                  "name the scene that the certificate is of, or give a list of pairs with --pairs "
+                  "FILE");
+    }
+    if (mesh || to.scene.names.empty())
+      to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
+    if (to.certificate == "-")
+      throw Error("CERTIFICATE", "is not read from standard input", "name a file");
+    check_scene(to.scene.names);
+    if (clearance_) to.clearance = parse_clearance(*clearance_);
+    if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
+      throw Error("--tiles",
+                  "is for certificates of tiles, without --frames, --clearance and --ignore",
+                  "leave it out, or name the certificates of the tiles");
+    }
+    if (const bool numbers = to.frames || to.tiles;
+        !to.certificate.empty() && is_numbered(to.certificate) != numbers) {
+      if (numbers) {
+        throw Error("CERTIFICATE", "'" + to.certificate + "' has no place for a number",
+                    "put %d or %04d where the number of the frame or tile is in its name");
+      }
+      throw Error("CERTIFICATE", "'" + to.certificate + "' has a place for a number",
+                  "say which frames with --frames FIRST:LAST, or how many tiles with --tiles N");
+    }
+    if (to.verified) {
+      const auto refuse = [](const char* reason, const char* remedy) {
+        throw Error("--verified", reason, remedy);
+      };
+      if (to.certificate.empty())
+        refuse("needs a certificate", "make one with farcull run SCENE --certificate FILE");
+      if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
+      if (clearance_)
+        refuse("does not take --clearance", "leave --clearance out: the certificate has it");
+      if (pairs_ && !tiles_)
+        refuse("does not read the list of --pairs",
+               "check twice: with --pairs, then with --verified, which proves the same list");
+    }
+    std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
+    if (!to.certificate.empty()) {
+      for (const std::string& file :
+           numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
+        inputs.push_back({"CERTIFICATE", file});
+    }
+    if (pairs_) inputs.push_back({"--pairs", *pairs_});
+    to.json = checked({.json = json_}, inputs).json.value_or("");
+    if (to.verified && to.json == "-") {
+      throw Error("--verified", "prints lines of its own, which would stand among the JSON",
+                  "write the JSON to a file");
+    }
+    return run_check(to);
+  }
 
  private:
   CheckArguments arguments_;
   Text json_, pairs_, clearance_, frames_, tiles_;
 };
 
-CLI::App* CheckCommand::add_to(CLI::App& app) {
-  return add_command(
-      app, "check", "prove or refute a certificate of a run, or a list of pairs",
-      Rows{{"CERTIFICATE", &arguments_.certificate, "",
-            "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
-            "alone"}} +
-          scene_rows(arguments_.scene, "SCENE", kSceneHelp, Need::may) +
-          Rows{
-              {"--self", &arguments_.self, "",
-               "every object was tested against itself, as by\nfarcull run --self"},
-              ignore_row(arguments_.scene.ignore),
-              {"--pairs", &pairs_, "FILE",
-               "a list of pairs as farcull run --pairs writes it:\n"
-               "is it right and complete? Columns are found by their\n"
-               "names; rows may be in any order. With --tiles: the\n"
-               "merged list, which must be equal byte for byte"},
-              {"--clearance", &clearance_, "D",
-               "the list is of pairs at this distance or less, in\n"
-               "world units; default 0, or that of the certificate"},
-              {"--frames", &frames_, "N|A:B",
-               "check these frames, as of farcull run --frames: with\n"
-               "a number (%d or %04d) in the name of CERTIFICATE and\n"
-               "a column `frame` in the list"},
-              {"--tiles", &tiles_, "N",
-               "check the certificates of all N tiles of the scene\n(farcull run --tiles), with "
-               "a number (%d or %04d) in\nthe name of CERTIFICATE; they prove the whole list"},
-              {"--verified", &arguments_.verified, "",
-               "the checker that Coq has proved must agree; a build has\nit where Coq is installed "
-               "(docs/verified.md)"},
-              {"--json", &json_, "FILE", kJsonHelp}},
-      "Examples:\n"
-      "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
-      "  farcull check c.json two-spheres --pairs pairs.csv\n"
-      "  farcull check two-spheres --pairs pairs.csv\n"
-      "  farcull run two-spheres --clearance 0.01 --certificate d.json\n"
-      "  farcull check d.json two-spheres\n"
-      "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
-      "  farcull check c_%04d.json two-spheres --frames 10\n"
-      "  farcull run two-tori --tiles 1/2 --certificate t1.json   (and likewise 2/2)\n"
-      "  farcull check t%d.json two-tori --tiles 2\n\n"
-      "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others; 1: refuted, or not proved, as for another scene; 2: what cannot be read.\n"
-      "Nothing is proved about the run: neither its method nor which pairs it kept. The file of a\n"
-      "certificate, and its proof: docs/certificate.md.");
-}
-
-int CheckCommand::run() {
-  CheckArguments& to = arguments_;
-  if (to.certificate.empty())
-    throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
-  if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
-  to.pairs = pairs_.value_or("");
-  if (frames_) to.frames = parse_frames(*frames_);
-  if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-  // The scene may come first, and the certificate last: the text of the file decides.
-  const auto is_certificate = [&](const std::string& path) {
-    const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
-    std::string text(100, ' ');
-    if (std::filesystem::is_regular_file(file))
-      std::ifstream(file).read(text.data(), static_cast<std::streamsize>(text.size()));
-    return text.find("\"farcull-certificate\"") != std::string::npos;
-  };
-  if (!to.scene.names.empty() && !is_certificate(to.certificate) &&
-      is_certificate(to.scene.names.back())) {
-    to.scene.names.insert(to.scene.names.begin(), std::move(to.certificate));
-    to.certificate = std::move(to.scene.names.back());
-    to.scene.names.pop_back();
-  }
-  // If the first of several names is not a mesh, it names a certificate.
-  const bool mesh = has_mesh_extension(to.certificate);
-  if (!pairs_ && mesh) {
-    throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
-                "name the certificate first, or give a list of pairs with --pairs FILE");
-  }
-  if (!pairs_ && to.scene.names.empty()) {
-    throw Error("SCENE", "is missing after '" + to.certificate + "'",
-                "name the scene that the certificate is of, or give a list of pairs with --pairs "
-                "FILE");
-  }
-  if (mesh || to.scene.names.empty())
-    to.scene.names.insert(to.scene.names.begin(), std::exchange(to.certificate, ""));
-  if (to.certificate == "-")
-    throw Error("CERTIFICATE", "is not read from standard input", "name a file");
-  check_scene(to.scene.names);
-  if (clearance_) to.clearance = parse_clearance(*clearance_);
-  if (tiles_ && (to.certificate.empty() || to.frames || clearance_ || to.scene.ignore)) {
-    throw Error("--tiles",
-                "is for certificates of tiles, without --frames, --clearance and --ignore",
-                "leave it out, or name the certificates of the tiles");
-  }
-  require_number(to.certificate, to.frames || to.tiles);
-  if (to.verified) {
-    const auto refuse = [](const char* reason, const char* remedy) {
-      throw Error("--verified", reason, remedy);
-    };
-    if (to.certificate.empty())
-      refuse("needs a certificate", "make one with farcull run SCENE --certificate FILE");
-    if (to.frames) refuse("does not take --frames", "check each frame by its own certificate");
-    if (clearance_)
-      refuse("does not take --clearance", "leave --clearance out: the certificate has it");
-    if (pairs_ && !tiles_)
-      refuse("does not read the list of --pairs",
-             "check twice: with --pairs, then with --verified, which proves the same list");
-  }
-  std::vector<NamedFile> inputs = scene_files(to.scene.names, to.frames);
-  if (!to.certificate.empty()) {
-    for (const std::string& file : numbered_files(to.certificate, to.tiles ? to.tiles : to.frames))
-      inputs.push_back({"CERTIFICATE", file});
-  }
-  if (pairs_) inputs.push_back({"--pairs", *pairs_});
-  to.json = checked({.json = json_}, inputs).json.value_or("");
-  if (to.verified && to.json == "-") {
-    throw Error("--verified", "prints lines of its own, which would stand among the JSON",
-                "write the JSON to a file");
-  }
-  return run_check(to);
-}
-
 }  // namespace
 
 int run_check(const CheckArguments& arguments) {
   const FloatingPointGuard guard;
-  if (arguments.certificate.empty() && arguments.pairs.empty())
-    throw std::logic_error("run_check: neither a certificate nor a list");
   if (arguments.tiles)
     return check_tiles(arguments, numbered_files(arguments.certificate, arguments.tiles), true);
   std::optional<GivenList> list;

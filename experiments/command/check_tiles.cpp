@@ -7,16 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <utility>
 
 #include "core/base/bytes.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
 #include "verify/certificate/pair_list.h"
@@ -92,13 +88,7 @@ std::string other_list(const std::string& path, std::string_view list) {
 
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files,
                 bool whole) {
-  const SceneSource source = [&](const TakePart& take) {
-    return stream_scene(arguments.scene, [&](Scene& part) {
-      if (arguments.self) make_self(part);
-      take(part);
-      say_notes();
-    });
-  };
+  const SceneSource source = scene_in_parts(arguments.scene, arguments.self);
   Census census = take_census(source, 0);
   require_nothing_ignored(names_of(census), "a check");
   std::vector<CheckedTile> tiles;

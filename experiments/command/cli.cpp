@@ -62,17 +62,13 @@ class HelpCommand {
         });
   }
   int run() const {
-    if (words_.size() == 1) {
-      for (const HelpTopic& topic : kTopics) {
-        if (words_[0] != topic.name) continue;
-        write_help(topic.text);
-        return kExitDone;
-      }
+    std::string text = help_of(*app_, words_);
+    std::vector<std::string> topics;
+    for (const HelpTopic& topic : kTopics) {
+      topics.emplace_back(topic.name);
+      if (words_.size() == 1 && words_[0] == topic.name) text = topic.text;
     }
-    const std::string text = help_of(*app_, words_);
     if (text.empty()) {
-      std::vector<std::string> topics;
-      for (const HelpTopic& topic : kTopics) topics.emplace_back(topic.name);
       throw Error(
           fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
           fmt::format("{}give one of the topics {}, or a command that farcull help lists",
@@ -98,24 +94,15 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-bool is_scene(const std::string& word) {
-  return has_mesh_extension(word) || is_scene_file(word) || is_builtin_scene(word) ||
-         std::filesystem::is_directory(word);
-}
-
 // Turns an error of CLI11 into an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = "farcull";
-  for (bool deeper = true; deeper;) {
-    deeper = false;
-    for (const CLI::App* subcommand : command->get_subcommands({})) {
-      if (!subcommand->parsed()) continue;
-      command = subcommand;
-      name += " " + command->get_name();
-      deeper = true;
-      break;
-    }
+  const auto parsed = [](const CLI::App* subcommand) { return subcommand->parsed(); };
+  for (auto named = app.get_subcommands(parsed); !named.empty();
+       named = command->get_subcommands(parsed)) {
+    command = named.front();
+    name += " " + command->get_name();
   }
   const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
@@ -142,10 +129,10 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
           word, "no such command",
           "try " + command_with(name + " " + meant, std::vector(words.begin() + 1, words.end())));
     }
-    if (command == &app && is_scene(word)) {
-      const std::string act = std::filesystem::is_directory(word) ? "clash" : "run";
-      return Error(word, "stands where a command should",
-                   "try " + command_with(name + " " + act, words));
+    if (command == &app && (has_mesh_extension(word) || is_scene_file(word) ||
+                            is_builtin_scene(word) || std::filesystem::is_directory(word))) {
+      const char* const act = std::filesystem::is_directory(word) ? " clash" : " run";
+      return Error(word, "stands where a command should", "try " + command_with(name + act, words));
     }
     return Error(word, "no such command", fmt::format("give one of {}", fmt::join(known, ", ")));
   }
@@ -193,8 +180,9 @@ constexpr const char* kFirstScreen =
     "  farcull run two-tori                       a built-in scene; farcull scenes lists them\n"
     "  farcull compare two-tori                   what each method misses, and its time\n";
 
-// Sets the options of the program itself.
-void describe(CLI::App& app) {
+// Runs the command that the arguments name; returns the exit status.
+int dispatch(int argc, char** argv) {
+  CLI::App app("", "farcull");
   app.get_formatter()->column_width(28);
   app.set_help_flag("-h,--help", "print this and exit");
   app.set_version_flag("--version", std::string(kVersion) + ", commit " + FARCULL_COMMIT,
@@ -206,13 +194,6 @@ void describe(CLI::App& app) {
       "environment.\n\n"
       "Topics:\n" +
       help_topics_text());
-}
-
-// Runs the command that the arguments name; returns the exit status.
-int dispatch(int argc, char** argv) {
-  CLI::App app("", "farcull");
-  describe(app);
-
   std::vector<Command> commands;  // in the order of the help
   for (Command (*const add)(CLI::App&) :
        {add_run, add_verify, add_plan, add_compare, add_distance, add_clash, add_bench, add_doctor,

@@ -29,9 +29,7 @@ namespace farcull {
 
 // ---- all uses of CLI11 by the commands, so that its templates are compiled once ----
 
-namespace {
-
-DeclaredCommand declared_below(const CLI::App& app, const std::string& parents) {
+DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
   out.name = parents.empty() ? app.get_name() : parents + " " + app.get_name();
   for (const CLI::Option* option : app.get_options()) {
@@ -45,13 +43,9 @@ DeclaredCommand declared_below(const CLI::App& app, const std::string& parents) 
     (option->get_positional() ? out.arguments : out.options).push_back(std::move(one));
   }
   for (const CLI::App* command : app.get_subcommands({}))
-    out.commands.push_back(declared_below(*command, out.name));
+    out.commands.push_back(declared(*command, out.name));
   return out;
 }
-
-}  // namespace
-
-DeclaredCommand declared(const CLI::App& app) { return declared_below(app, ""); }
 
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer) {
@@ -83,13 +77,11 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
   const CLI::App* command = &app;
   std::string before;
   for (const std::string& name : names) {
-    const CLI::App* found = nullptr;
-    for (const CLI::App* below : command->get_subcommands({})) {
-      if (below->get_name() == name) found = below;
-    }
-    if (found == nullptr) return "";
+    const auto found =
+        command->get_subcommands([&](const CLI::App* below) { return below->get_name() == name; });
+    if (found.empty()) return "";
     before += (before.empty() ? "" : " ") + command->get_name();
-    command = found;
+    command = found.front();
   }
   // App::help() would describe the command that was parsed, which is `help`.
   return command->get_formatter()->make_help(
@@ -113,9 +105,7 @@ struct Identity {
   ino_t inode = 0;
   std::string name;      // empty if the file exists
   bool regular = false;  // true also if the file does not exist yet
-
-  using Key = std::tuple<dev_t, ino_t, std::string>;
-  Key key() const { return {device, inode, name}; }
+  auto operator<=>(const Identity&) const = default;
 };
 
 // The file that writing to the path creates: a link to a missing file is followed to that file.
@@ -142,25 +132,7 @@ std::optional<Identity> identity_of(const std::string& path) {
   return Identity{status.st_dev, status.st_ino, file.filename().string(), true};
 }
 
-// Whether a built-in scene, with any numbers and suffixes, is made of packaged meshes.
-bool needs_meshes(const std::string& name) {
-  const BuiltinScene* const scene = find_builtin_scene(name);
-  return scene != nullptr && scene->needs_meshes;
-}
-
 std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOutput : file.path; }
-
-// A certificate holds one scene, so frames need one file each.
-void require_number(const std::string& certificate, bool frames) {
-  if (is_numbered(certificate) == frames) return;
-  if (frames) {
-    throw Error("--certificate", "'" + certificate + "' has no place for the number of the frame",
-                "put %d or %04d there, as in certificate_%04d.json: each frame has a file of its "
-                "own");
-  }
-  throw Error("--certificate", "'" + certificate + "' has a place for the number of a frame",
-              "say which frames with --frames N or --frames FIRST:LAST, or name one file");
-}
 
 std::string complaint(const std::string& message) {
   return wrapped("farcull: " + clean_name(message), text_columns(stderr), 9);
@@ -187,8 +159,7 @@ Rows MethodOptions::rows(const std::vector<std::string>& names) {
     Text& text = texts_[option.name];
     bool& flag = flags_[option.name];
     if (!names.empty() && std::ranges::find(names, option.name) == names.end()) continue;
-    const char* word = words_.emplace_back(option_word(option.name)).c_str();
-    out.push_back({word, &text, option.type, spelled(option.help)});
+    out.push_back({option_word(option.name), &text, option.type, spelled(option.help)});
     if (*option.type == 0) out.back().value = &flag;
     const auto draws_or_lacks = [&](Method method) {
       return draws(method) || !option.serves(traits(method));
@@ -205,10 +176,6 @@ GivenOptions MethodOptions::given() const {
     if (has(option.name)) out[option.name] = text(option.name).value_or("");
   }
   return out;
-}
-
-void take_given(const char* name, const Text& text, RunOptions& options) {
-  if (text) take_option(name, *text, options);
 }
 
 std::string help_of_option(const std::string& name) { return spelled(run_option(name).help); }
@@ -229,6 +196,17 @@ Scene read_scene(const SceneArguments& arguments, bool self) {
   say_notes();
   if (self) make_self(scene);
   return scene;
+}
+
+std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
+    const SceneArguments& arguments, bool self) {
+  return [&arguments, self](const TakePart& take) {
+    return stream_scene(arguments, [&](Scene& part) {
+      if (self) make_self(part);
+      take(part);
+      say_notes();
+    });
+  };
 }
 
 void complain_broken(const std::string& message) {
@@ -298,8 +276,8 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
   if (arguments.empty()) add_packaged();
   for (const std::string& argument : arguments) {
     if (argument == "-") continue;  // standard input
-    if (is_builtin_scene(argument)) {
-      if (needs_meshes(argument)) add_packaged();
+    if (const BuiltinScene* const builtin = find_builtin_scene(argument)) {
+      if (builtin->needs_meshes) add_packaged();
     } else if (is_scene_file(argument)) {
       add(argument);
       for (const std::string& mesh : meshes_of_scene_file(argument)) add_mesh(mesh);
@@ -311,17 +289,17 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 }
 
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::map<Identity::Key, const NamedFile*> written;  // the first output of each file
+  std::map<Identity, const NamedFile*> written;  // the first output of each file
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     if (identity && identity->regular && identity->name.empty())
-      written.try_emplace(identity->key(), &output);
+      written.try_emplace(*identity, &output);
   }
   if (written.empty()) return;
   for (const NamedFile& input : inputs) {
     const std::optional<Identity> read = identity_of(input.path);
     if (!read) continue;
-    const auto found = written.find(read->key());
+    const auto found = written.find(*read);
     if (found == written.end()) continue;
     const NamedFile& output = *found->second;
     throw Error(output.by,
@@ -334,13 +312,13 @@ void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<Na
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs) {
   if (std::ranges::find(outputs, "-", &NamedFile::path) == outputs.end())
     outputs.insert(outputs.begin(), {kStandardOutput, "-"});
-  std::map<Identity::Key, const NamedFile*> files;
+  std::map<Identity, const NamedFile*> files;
   const NamedFile* standard_output = nullptr;
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     const NamedFile* other = nullptr;
     if (identity && identity->regular) {
-      const auto [place, is_new] = files.try_emplace(identity->key(), &output);
+      const auto [place, is_new] = files.try_emplace(*identity, &output);
       if (!is_new) other = place->second;
     }
     if (output.path == "-") {
@@ -387,7 +365,15 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                   std::string("name the file to write first, as in ") + option + " " + example);
     }
     const bool certificate = path == &outputs.certificate;
-    if (certificate) require_number(**path, frames.has_value());
+    if (certificate && is_numbered(**path) != frames.has_value()) {
+      if (frames) {
+        throw Error(option, "'" + **path + "' has no place for the number of the frame",
+                    "put %d or %04d there, as in certificate_%04d.json: each frame has a file of "
+                    "its own");
+      }
+      throw Error(option, "'" + **path + "' has a place for the number of a frame",
+                  "say which frames with --frames N or --frames FIRST:LAST, or name one file");
+    }
     const std::vector<std::string> each =
         certificate ? numbered_files(**path, frames) : std::vector{**path};
     for (const std::string& file : each) files.push_back({option, file});
@@ -443,6 +429,27 @@ std::string device_of(const Text& device) {
   if (device && device->empty())
     throw Error("--device", "its value is empty", "give native, software, hardware or a number");
   return device.value_or("");
+}
+
+std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects) {
+  constexpr std::uint64_t kMostTriangles = 4'000'000;
+  constexpr std::size_t kMostLines = 3;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t o : objects) triangles += scene.objects[o].triangle_count;
+  if (triangles > kMostTriangles) return "";
+  std::string out;
+  std::size_t lines = 0;
+  for (const std::uint32_t o : objects) {
+    const std::optional<WeldHint> hint = weld_hint(scene, scene.objects[o]);
+    if (!hint) continue;
+    out += fmt::format(
+        "hint       {} is not closed: {}, one of them at {:.6g} {:.6g} {:.6g}. Their ends nearly\n"
+        "           coincide; --weld {:.0e}*size closes it\n",
+        scene.objects[o].name, counted(hint->open_edges, "open edge", "open edges"),
+        hint->place.x(), hint->place.y(), hint->place.z(), hint->tolerance);
+    if (++lines == kMostLines) break;
+  }
+  return out;
 }
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path) {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -26,6 +25,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
+#include "verify/certificate/certificate.h"
 
 namespace CLI {
 class App;
@@ -44,7 +44,7 @@ enum class Need : std::uint8_t { may, must };
 /// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
 /// bool is a flag without a value. `type` stands for the value in the help.
 struct OptionRow {
-  const char* name;
+  std::string name;
   std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
@@ -81,7 +81,8 @@ struct DeclaredCommand {
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
 };
-DeclaredCommand declared(const CLI::App& app);
+/// parents: the names of the commands above it.
+DeclaredCommand declared(const CLI::App& app, const std::string& parents = "");
 /// The text that --help prints for the program (no names), a command, or a subcommand. Empty if
 /// there is no such command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
@@ -107,11 +108,7 @@ Command declare(CLI::App& parent, const Arguments&... arguments) {
   return {command->add_to(parent), [command] { return command->run(); }};
 }
 
-// The commands of the program. Exit status 1 means, by command: run, verify, compare: a guarantee
-// is broken. bench: two contestants disagree. clash: a pair of parts has a verdict of --fail-on, or
-// was not examined. distance: the accounting found a nearer pair or a wrong answer, or the reliable
-// diagram lost a nearest object. doctor: an assumption does not hold on the device. check: refuted,
-// or not proved. picture, report: a guarantee is broken.
+// The commands of the program. The --help of each says what exit status 1 means.
 Command add_run(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_plan(CLI::App& app);
@@ -179,6 +176,9 @@ void say_notes();
 
 /// load_scene() and say_notes(); then make_self() if `self` is set.
 Scene read_scene(const SceneArguments& arguments, bool self = false);
+/// The same for stream_scene(), which gives the scene part by part. The arguments must outlive it.
+std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
+    const SceneArguments& arguments, bool self);
 
 /// As complain(), in red on a terminal: for a guarantee that is broken.
 void complain_broken(const std::string& message);
@@ -264,10 +264,7 @@ class MethodOptions {
   // One entry per option of the table. Rows point at them, so their addresses must not change.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
-  std::deque<std::string> words_;
 };
-/// Reads the option into `options` if it was given.
-void take_given(const char* name, const Text& text, RunOptions& options);
 
 /// Reads a distance in world units. Throws Error naming --clearance.
 double parse_clearance(const std::string& text);
@@ -286,9 +283,6 @@ OptionRow ignore_row(Text& ignore);
 
 /// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
-inline constexpr const char* kFacesHelp =
-    "with --pairs: two more columns, face_a and face_b, the\n"
-    "faces of the mesh files (see farcull help pairs)";
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"
@@ -319,11 +313,40 @@ struct CheckArguments {
   bool verified = false;  // the proved checker must agree; goes with certificates of one scene
 };
 
-/// Prints the verdict; with frames one verdict per frame and one for all, and likewise with tiles.
-/// Returns 0 if proved, and if a given list is the proved one; else 1. Throws Error if the
-/// certificate, the scene or the list cannot be read, and if the list has frames but the arguments
-/// name none, or the reverse.
+/// Precondition: a certificate or a list is given. Prints the verdict; with frames one verdict per
+/// frame and one for all, and likewise with tiles. Returns 0 if proved, and if a given list is the
+/// proved one; else 1. Throws Error if the certificate, the scene or the list cannot be read, and
+/// if the list has frames but the arguments name none, or the reverse.
 int run_check(const CheckArguments& arguments);
+
+/// The largest certificate or list that is read.
+constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
+
+Certificate read_certificate(const std::string& path);
+
+/// Replaces what a terminal cannot show, line by line.
+std::string clean_lines(const std::string& text);
+
+/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
+using TakeWord = std::function<void(std::uint64_t)>;
+
+/// Gives the certificates and the scene to the checker that Coq has proved
+/// (verify/certificate/coq): `farcull-check-verified`, which is in the folder of this program or in
+/// the PATH. Prints the SHA-256 of the files as this program has them, then the output of the
+/// checker: the same SHA-256, and its verdict. words: gives the words of the scene; status: the
+/// result of this checker. Throws Error if the other one cannot be run, or if they do not agree
+/// whether this is proved.
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status);
+
+/// Checks certificates of tiles in turn, each with the triangles that meet its tile. So the memory
+/// is that of the largest part of the scene and of one tile. whole: these must be all tiles, in
+/// order. Prints the verdict and returns the exit status, as run_check().
+int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
+
+/// Gives all words of a scene, or those of its coordinates alone.
+void give_words(const Scene& scene, const TakeWord& take);
+void give_coordinates(const Scene& scene, const TakeWord& take);
 
 // ---- `farcull picture` ----
 
@@ -335,12 +358,9 @@ class PictureCommand {
   int run() const;
   /// The parsed and checked options, all but the paths of the files.
   PictureArguments arguments() const;
-  /// The contents of the page of --html, from the arguments of its flat picture.
-  PageArguments page_arguments(const PictureArguments& picture) const;
 
  private:
-  /// The options that all panels share.
-  RunOptions usual_options() const;
+  PageArguments page_arguments(const PictureArguments& picture) const;
 
   SceneArguments scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
@@ -348,18 +368,9 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
-// What the program tells its user besides an answer (hints.cpp).
-
-/// The objects that collide with themselves (two of their triangles do), ascending.
-std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record);
-
 /// A line for each of these objects that is not closed but would be with --weld: where, and at
 /// which tolerance. At most three lines; none if the objects have more than 4 million triangles in
 /// all.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
-
-/// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their
-/// surfaces do not meet. Empty if there are none, or if more than a million pairs of boxes overlap.
-std::string nested_line(const Scene& scene, const Record& record);
 
 }  // namespace farcull

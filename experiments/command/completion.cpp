@@ -16,17 +16,6 @@
 namespace farcull {
 namespace {
 
-// The words of "fragment|fixed", without placeholders such as N or A:B.
-std::vector<std::string> alternatives(const std::string& type) {
-  std::vector<std::string> out;
-  if (type.find('|') == std::string::npos) return out;
-  for (const auto word : std::views::split(type, '|')) {
-    const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
-    if (std::ranges::none_of(word, capital)) out.emplace_back(word.begin(), word.end());
-  }
-  return out;
-}
-
 std::string joined(const std::vector<std::string>& words, const char* between = " ") {
   return fmt::format("{}", fmt::join(words, between));
 }
@@ -43,8 +32,15 @@ std::string completion_words(const std::string& type) {
   if (type == "SHELL") return "bash";
   if (type == "FILE" || type == "CERTIFICATE" || type == "SHARDS") return "@files";
   if (type == "DIR") return "@folders";
-  if (type != "SCENE" && type != "NAME") return joined(alternatives(type));
   std::vector<std::string> words;
+  if (type != "SCENE" && type != "NAME") {
+    if (type.find('|') == std::string::npos) return "";
+    for (const auto word : std::views::split(type, '|')) {  // without placeholders: N, A:B
+      const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
+      if (std::ranges::none_of(word, capital)) words.emplace_back(word.begin(), word.end());
+    }
+    return joined(words);
+  }
   for (const BuiltinScene& scene : builtin_scenes()) words.push_back(scene.name);
   if (type == "SCENE") words.emplace_back("@meshes");
   return joined(words);
@@ -55,16 +51,14 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
   for (const DeclaredCommand& below : command.commands) visit(below, see);
 }
 
-// The last word of a command's name.
-std::string last_word(const std::string& name) { return name.substr(name.find_last_of(' ') + 1); }
-
 // The branches of `case "$1" in`, one per command: what may follow the command (`below`, `flags`,
 // `first`, `others`).
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
     std::vector<std::string> commands, options;
-    for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
+    for (const DeclaredCommand& below : command.commands)
+      commands.push_back(below.name.substr(below.name.find_last_of(' ') + 1));
     for (const DeclaredOption& option : command.options)
       options.insert(options.end(), option.names.begin(), option.names.end());
     const std::string argument =
@@ -93,10 +87,11 @@ std::string table_of_values(const DeclaredCommand& program) {
   return out;
 }
 
-// The functions that read the tables.
-std::string shared_tables(const DeclaredCommand& program) {
-  return fmt::format(
-      R"sh(# _farcull_words COMMAND: sets what may follow the command.
+// The tables, the functions that read them, and what bash calls.
+std::string bash_script(const DeclaredCommand& program) {
+  return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
+         fmt::format(
+             R"sh(# _farcull_words COMMAND: sets what may follow the command.
 _farcull_words() {{
   below='' flags='' first='' others=''
   case $1 in
@@ -142,12 +137,8 @@ _farcull_read() {{
   fi
 }}
 )sh",
-      table_of_words(program), table_of_values(program));
-}
-
-std::string bash_script(const DeclaredCommand& program) {
-  return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
-         shared_tables(program) + R"sh(
+             table_of_words(program), table_of_values(program)) +
+         R"sh(
 _farcull() {
   local current='' candidates='' line=${COMP_LINE:0:COMP_POINT} word prefix='' kind path
   local mesh='\.([oO][bB][jJ]|[oO][fF][fF]|[pP][lL][yY]|[sS][tT][lL]|json|(obj|off|ply|stl)\.gz)$'
@@ -180,12 +171,6 @@ complete -F _farcull farcull
 )sh";
 }
 
-// The script for a shell. Throws Error naming SHELL if the shell is unknown.
-std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
-  if (shell == "bash") return bash_script(program);
-  throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash");
-}
-
 class CompletionCommand {
  public:
   CLI::App* add_to(CLI::App& app) {
@@ -197,7 +182,9 @@ class CompletionCommand {
                        "`cmake --install` puts it in place.");
   }
   int run() const {
-    write_help(completion_script(declared(*program_), shell_));
+    if (shell_ != "bash")
+      throw Error("SHELL", quoted(shell_) + " is no shell that is known here", "give bash");
+    write_help(bash_script(declared(*program_)));
     return 0;
   }
 

@@ -31,20 +31,6 @@ constexpr std::size_t kCases = 6000;
 constexpr std::uint64_t kPoints = 60'000;
 constexpr std::uint64_t kSeed = 1;
 
-bool same(const SolidAnswer& a, const SolidAnswer& b) {
-  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
-  return a.hit == b.hit &&
-         (!a.hit || (bits(a.entry) == bits(b.entry) && bits(a.exit) == bits(b.exit)));
-}
-
-SolidAnswer on_lanes(const SolidProgram& program, const SolidCase& c) {
-  SolidAnswer answer{};
-  std::uint8_t hit = 0;
-  program.lines_native({&c.solid, 1, &c.cx, &c.cy, &hit, &answer.entry, &answer.exit});
-  answer.hit = hit != 0;
-  return answer;
-}
-
 // Half of the solids are fattened triangles, half are made directly from floats.
 ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
   KernelTally tally;
@@ -59,11 +45,16 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
     } else {
       c.solid = kernel.adversarial(kSeed, i, c.cx, c.cy);
     }
-    const SolidAnswer answer = on_lanes(kernel.program, c);
-    SolidAnswer scalar{};
+    SolidAnswer answer{}, scalar{};
+    std::uint8_t hit = 0;
+    kernel.program.lines_native({&c.solid, 1, &c.cx, &c.cy, &hit, &answer.entry, &answer.exit});
+    answer.hit = hit != 0;
     scalar.hit = kernel.program.interval(c.cx, c.cy, c.solid, scalar.entry, scalar.exit);
     kernel.check(c, answer, ordinary, tally);
-    different += !same(answer, scalar);
+    const auto bits = [](const SolidAnswer& a) {
+      return std::pair(std::bit_cast<std::uint32_t>(a.entry), std::bit_cast<std::uint32_t>(a.exit));
+    };
+    different += answer.hit != scalar.hit || (answer.hit && bits(answer) != bits(scalar));
   }
   return {.assumption = "A4",
           .name = fmt::format("{}, lanes of {}", kernel.name, target),
@@ -72,34 +63,6 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
           .samples = tally.checked,
           .pass = tally.checked > 0 && tally.lost == 0 && different == 0,
           .note = {}};
-}
-
-// Tests Lemmas 1 and 2 on the native canvas, with both offsets.
-std::vector<ProbeResult> lemma_probes() {
-  LemmaSettings settings;
-  settings.points = kPoints;
-  settings.seed = kSeed;
-  settings.displace = true;
-  settings.radius = [](const Budget& budget, double) { return budget.radius(); };
-  LemmaRow sum;
-  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
-    NativeCanvas canvas(fattener.mode, fattener.solid);
-    const LemmaRow total = lemma_total(lemma_experiment(canvas, fattener, settings));
-    sum.points += total.points;
-    sum.no_sample += total.no_sample;
-    sum.not_bounding += total.not_bounding;
-  }
-  const auto result = [&sum](const char* assumption, const char* name, std::uint64_t found) {
-    return ProbeResult{.assumption = assumption,
-                       .name = name,
-                       .measured = static_cast<double>(found),
-                       .unit = "points",
-                       .samples = sum.points,
-                       .pass = sum.points > 0 && found == 0,
-                       .note = {}};
-  };
-  return {result("A3", "points of triangles whose pixel got no sample", sum.no_sample),
-          result("A5", "points that their samples do not bound", sum.not_bounding)};
 }
 
 using Json = nlohmann::ordered_json;
@@ -177,7 +140,8 @@ Json limits_json(const GlInfo& gl, int resolution) {
 }
 
 // The floating-point environment in force and the caller's, both detected by arithmetic.
-std::string arithmetic_line(const FloatingPoint& callers) {
+std::string arithmetic_line() {
+  const FloatingPoint callers = callers_floating_point();
   return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
                      to_string(floating_point()),
                      callers == kProved ? "the same" : to_string(callers) + " (set aside)");
@@ -200,13 +164,6 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
                    "\n{} of {} probes FAIL: what relies on them promises nothing on this device\n",
                    failed, probes.size());
   return out;
-}
-
-std::string verdict_text(const DeviceVerdict& verdict) {
-  return fmt::format("\nfar: {}; {}\n", to_string(verdict),
-                     !verdict.file.empty()  ? "kept in " + verdict.file
-                     : verdict.note.empty() ? "not kept"
-                                            : "not kept: " + verdict.note);
 }
 
 Json probes_json(const std::vector<ProbeResult>& probes) {
@@ -233,7 +190,31 @@ std::vector<ProbeResult> native_probes() {
       for (const SolidKernel& kernel : solid_kernels()) out.push_back(probe_kernel(kernel, target));
     }
   }
-  for (ProbeResult& r : lemma_probes()) out.push_back(std::move(r));
+  // Lemmas 1 and 2 on the native canvas.
+  LemmaSettings settings;
+  settings.points = kPoints;
+  settings.seed = kSeed;
+  settings.displace = true;
+  settings.radius = [](const Budget& budget, double) { return budget.radius(); };
+  LemmaRow sum;
+  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
+    NativeCanvas canvas(fattener.mode, fattener.solid);
+    const LemmaRow total = lemma_total(lemma_experiment(canvas, fattener, settings));
+    sum.points += total.points;
+    sum.no_sample += total.no_sample;
+    sum.not_bounding += total.not_bounding;
+  }
+  const auto add = [&](const char* assumption, const char* name, std::uint64_t found) {
+    out.push_back({.assumption = assumption,
+                   .name = name,
+                   .measured = static_cast<double>(found),
+                   .unit = "points",
+                   .samples = sum.points,
+                   .pass = sum.points > 0 && found == 0,
+                   .note = {}});
+  };
+  add("A3", "points of triangles whose pixel got no sample", sum.no_sample);
+  add("A5", "points that their samples do not bound", sum.not_bounding);
   return out;
 }
 
@@ -257,26 +238,22 @@ Json native_json(const std::vector<ProbeResult>& probes) {
           {"pass", all_pass(probes)}};
 }
 
-struct DoctorArguments {
-  std::string device, json;
-};
-
-void write_report(Json report, bool pass, const DoctorArguments& arguments) {
+void write_report(Json report, bool pass, const std::string& path) {
   report["pass"] = pass;
   report["commit"] = FARCULL_COMMIT;
-  write_json(report, arguments.json);
+  write_json(report, path);
 }
 
-// Reports the findings on a machine without OpenGL, or with --device cpu.
-int doctor_without_gl(const DoctorArguments& arguments) {
+// Reports the findings on a machine without OpenGL, or with --device cpu. json: the file, or "".
+int doctor_without_gl(const std::string& json) {
   const std::vector<ProbeResult> native = native_probes();
-  if (!arguments.json.empty()) {
+  if (!json.empty()) {
     write_report(
         {{"native", native_json(native)},
          {"floating_point", floating_point_json(callers_floating_point(), floating_point())}},
-        all_pass(native), arguments);
+        all_pass(native), json);
   }
-  if (arguments.json != "-") print(native_text(native) + arithmetic_line(callers_floating_point()));
+  if (json != "-") print(native_text(native) + arithmetic_line());
   return all_pass(native) ? 0 : 1;
 }
 
@@ -296,65 +273,66 @@ class DoctorCommand {
   }
   // Returns 0 if every assumption holds on the native canvas and on the chosen device, else 1.
   // Without OpenGL only the native canvas is tested.
-  int run() const;
+  int run() const {
+    const std::string device = device_of(device_);
+    const std::string json = checked({.json = json_}, {}).json.value_or("");
+    const FloatingPointGuard guard;
+    if (is_cpu(device)) return doctor_without_gl(json);
+    // A missing device is refused before the probes of the native canvas, which take seconds.
+    const std::vector<GlDevice> devices = GlContext::list_devices();
+    const std::optional<int> chosen = choose(devices, device);
+    const bool people = json != "-";
+    if (!chosen && device.empty()) {
+      if (people)
+        print(devices_table(devices, -1) +
+              "no device offers what farcull needs of OpenGL: "
+              "everything runs on the cores of the CPU\n\n");
+      return doctor_without_gl(json);
+    }
+    if (device == "hardware" && std::ranges::count(devices, device, &GlDevice::kind) == 0)
+      throw Error("--device", "no GPU was found", "give software or native");
+    // The constructor throws Error if no device fits the option.
+    const GlContext context(chosen ? std::to_string(*chosen) : device);
+    const std::vector<ProbeResult> native = native_probes();
+    const GlInfo& gl = context.info();
+    const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
+    if (people)
+      print(native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
+            limits_table(gl, resolution) + arithmetic_line());
+    const bool terminal = is_terminal(stderr);
+    const Stopwatch probing;
+    const std::vector<ProbeResult> probes =
+        all_probes(context, [terminal](const std::string& assumption) {
+          if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
+        });
+    if (terminal) std::fprintf(stderr, "\r\033[K");
+    const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
+    const bool pass = all_pass(native) && all_pass(probes);
+    if (!json.empty()) {
+      Json report = {
+          {"native", native_json(native)},
+          {"devices", devices_json(devices)},
+          {"chosen", json_of(chosen)},
+          {"gl", gl_json(gl)},
+          {"limits", limits_json(gl, resolution)},
+          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
+          {"probes", probes_json(probes)},
+          {"verdict_file", verdict.file}};
+      write_report(std::move(report), pass, json);
+    }
+    if (people) {
+      print(probes_table(probes) + fmt::format("\nfar: {}; {}\n", to_string(verdict),
+                                               !verdict.file.empty() ? "kept in " + verdict.file
+                                               : verdict.note.empty()
+                                                   ? "not kept"
+                                                   : "not kept: " + verdict.note));
+    }
+    return pass ? 0 : 1;
+  }
 
  private:
   Text device_, json_;
 };
-
-int DoctorCommand::run() const {
-  const DoctorArguments arguments{.device = device_of(device_),
-                                  .json = checked({.json = json_}, {}).json.value_or("")};
-  const FloatingPointGuard guard;
-  if (!arguments.json.empty()) check_output(arguments.json);
-  if (is_cpu(arguments.device)) return doctor_without_gl(arguments);
-  // A missing device is refused before the probes of the native canvas, which take seconds.
-  const std::vector<GlDevice> devices = GlContext::list_devices();
-  const std::optional<int> chosen = choose(devices, arguments.device);
-  if (!chosen && arguments.device.empty()) {
-    if (arguments.json != "-")
-      print(devices_table(devices, -1) +
-            "no device offers what farcull needs of OpenGL: "
-            "everything runs on the cores of the CPU\n\n");
-    return doctor_without_gl(arguments);
-  }
-  if (arguments.device == "hardware" &&
-      std::ranges::count(devices, arguments.device, &GlDevice::kind) == 0)
-    throw Error("--device", "no GPU was found", "give software or native");
-  // The constructor throws Error if no device fits the option.
-  const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
-  const std::vector<ProbeResult> native = native_probes();
-  const GlInfo& gl = context.info();
-  const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
-  const bool people = arguments.json != "-";
-  if (people)
-    print(native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
-          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
-
-  const bool terminal = is_terminal(stderr);
-  const Stopwatch probing;
-  const std::vector<ProbeResult> probes =
-      all_probes(context, [terminal](const std::string& assumption) {
-        if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
-      });
-  if (terminal) std::fprintf(stderr, "\r\033[K");
-  const DeviceVerdict verdict = keep_verdict(gl, probes, probing.ms());
-  const bool pass = all_pass(native) && all_pass(probes);
-  if (!arguments.json.empty()) {
-    Json report = {
-        {"native", native_json(native)},
-        {"devices", devices_json(devices)},
-        {"chosen", json_of(chosen)},
-        {"gl", gl_json(gl)},
-        {"limits", limits_json(gl, resolution)},
-        {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
-        {"probes", probes_json(probes)},
-        {"verdict_file", verdict.file}};
-    write_report(std::move(report), pass, arguments);
-  }
-  if (people) print(probes_table(probes) + verdict_text(verdict));
-  return pass ? 0 : 1;
-}
 
 }  // namespace
 

@@ -16,51 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct LemmaArguments {
-  std::uint64_t points = 100000;
-  std::string radius = "budget";  // budget, published or a factor
-  // native, gl or worst; empty: the canvas of `device`, or, without a device, gl if hardware
-  // answers and passes its probes, else native.
-  std::string canvas;
-  std::string offset = "obb";  // obb or exact
-  std::string device;
-  std::uint64_t seed = 1;
-  Outputs outputs = {};
-};
-
-std::string radius_name(const RadiusRule& rule) {
-  return rule.published ? "published" : fmt::format("{}", rule.factor);
-}
-
-struct Result {
-  RadiusRule rule;
-  std::vector<LemmaRow> rows;
-};
-
 // The numbers of a row in the output.
-struct WrittenRow {
-  std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0;
-  FARCULL_FIELDS(points, violations, no_sample, not_bounding)
-};
-WrittenRow written(const LemmaRow& row) {
-  return {row.points, row.violations(), row.no_sample, row.not_bounding};
+Json numbers_json(const LemmaRow& row) {
+  return {{"points", row.points},
+          {"violations", row.violations()},
+          {"no_sample", row.no_sample},
+          {"not_bounding", row.not_bounding}};
 }
 
-Json result_json(const Result& result) {
-  Json out = {{"radius", result.rule.published ? Json("published") : Json(result.rule.factor)}};
-  out.update(json_of(written(lemma_total(result.rows))));
-  out["generators"] = Json::array();
-  for (const LemmaRow& row : result.rows) {
-    Json& one = out["generators"].emplace_back(Json{{"generator", row.generator}});
-    one.update(json_of(written(row)));
-  }
-  return out;
-}
-
-std::string result_table(const Result& result) {
+std::string table_of(std::vector<LemmaRow> rows) {
   std::string out = fmt::format("{:<28} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "generator",
                                 "points", "no sample", "not bounding", "violations", "rate");
-  std::vector<LemmaRow> rows = result.rows;
   rows.push_back(lemma_total(rows));
   for (const LemmaRow& row : rows) {
     out += fmt::format(
@@ -72,21 +38,6 @@ std::string result_table(const Result& result) {
   return out;
 }
 
-void validate(const LemmaArguments& arguments) {
-  if (arguments.points < 1 || arguments.points > 1'000'000'000'000) {
-    throw Error("--points", fmt::format("{} is no number of points", arguments.points),
-                "give 1 to 1e12");
-  }
-  const std::string& canvas = arguments.canvas;
-  if (!canvas.empty())
-    word_of("--canvas", canvas, {"native", "gl", "worst"}, "no canvas", "give native, gl or worst");
-  if (!arguments.device.empty() && canvas != "" && canvas != "gl") {
-    throw Error("--device", "the " + canvas + " canvas needs no device",
-                "leave --device out, or use --canvas gl");
-  }
-  word_of("--offset", arguments.offset, {"obb", "exact"}, "no offset", "give obb or exact");
-}
-
 // A canvas with the session that it needs; the worst canvas needs none.
 struct LemmaCanvas {
   std::string name;  // native, gl or worst
@@ -94,119 +45,125 @@ struct LemmaCanvas {
   std::unique_ptr<WorstCanvas> worst;
   Canvas* canvas = nullptr;
 
-  LemmaCanvas(const LemmaArguments& arguments, const Fattener& fattener) {
-    if (arguments.canvas == "worst") {
+  LemmaCanvas(const std::string& kind, const std::string& device, const Fattener& fattener) {
+    if (kind == "worst") {
       name = "worst";
       worst = std::make_unique<WorstCanvas>(fattener.solid);
       canvas = worst.get();
       return;
     }
-    const bool named = arguments.canvas.empty() || !arguments.device.empty();
-    session.emplace(named ? arguments.device : arguments.canvas);
+    session.emplace(kind.empty() || !device.empty() ? device : kind);
     canvas = &session->canvas(fattener, {});
     name = session->canvas_device().native ? "native" : "gl";
   }
   // The GL device that draws; null for the others.
-  const GlInfo* device() { return name == "gl" ? &session->context().info() : nullptr; }
+  const GlInfo* info() { return name == "gl" ? &session->context().info() : nullptr; }
 };
-
-// displaced: what is drawn gets errors as large as those of doubles. Only for canvases without
-// errors of their own, which would hide these errors.
-Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
-               bool displaced, const Fattener& fattener, const Progress& progress) {
-  LemmaSettings settings;
-  settings.points = arguments.points;
-  settings.seed = arguments.seed;
-  settings.displace = displaced;
-  settings.radius = [&rule](const Budget& budget, double step) {
-    return lemma_radius(rule, budget, step);
-  };
-  const std::string before = "radius " + radius_name(rule) + ", ";
-  const Progress named =
-      progress ? [&](const ProgressStep& step) { progress(before + text_of(step)); } : Progress{};
-  return {rule, lemma_experiment(canvas, fattener, settings, named)};
-}
-
-Json to_json(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
-             const Result& result) {
-  Json device;
-  if (const GlInfo* info = on.device())
-    device = {{"vendor", info->vendor}, {"renderer", info->renderer}, {"version", info->version}};
-  Json out = {{"experiment", "lemma"},
-              {"canvas", on.name},
-              {"offset", arguments.offset},
-              {"device", device},
-              {"subpixel_bits",
-               on.name == "native" ? Json(nullptr) : Json(on.canvas->limits().subpixel_bits)},
-              {"lanes", on.name == "native" ? Json(lane_target()) : Json(nullptr)},
-              {"seed", arguments.seed},
-              {"seconds", seconds},
-              {"commit", FARCULL_COMMIT}};
-  out.update(result_json(result));
-  return out;
-}
-
-std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
-                    const Result& result) {
-  const std::string where = on.name == "gl"       ? on.device()->renderer
-                            : on.name == "native" ? "lanes of " + lane_target()
-                                                  : "no device";
-  const std::string heading =
-      fmt::format("canvas {}, offset {}, {}\n\n", on.name, arguments.offset, where);
-  return heading + "radius " + radius_name(result.rule) + "\n" + result_table(result) +
-         fmt::format("\ntook {:.1f} s\n", seconds);
-}
 
 class LemmaCommand {
  public:
-  CLI::App* add_to(CLI::App& experiment);
-  int run();
+  CLI::App* add_to(CLI::App& experiment) {
+    return add_command(
+        experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic",
+        {{"--points", &points_, "N", "points in all; default 100000"},
+         {"--radius", &radius_, "RADIUS",
+          "budget, published, or a factor on the budget;\ndefault budget"},
+         {"--canvas", &canvas_, "native|gl|worst",
+          "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
+          "allow); default gl where\n--device is given or hardware answers, else native"},
+         {"--offset", &offset_, "OFFSET", "obb or exact; default obb"},
+         {"--seed", &seed_, "N", "of the points; default 1"},
+         {"--device", &device_, "DEVICE", kDeviceHelp},
+         {"--json", &json_, "FILE", kJsonHelp}},
+        "Examples:\n"
+        "  farcull experiment lemma --points 1000000 --radius budget\n"
+        "  farcull experiment lemma --radius published\n"
+        "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
+        "Exit status 1: a violation at the budget radius or beyond.");
+  }
+  int run() const {
+    const Outputs outputs = checked({.json = json_}, {});
+    const std::string device = device_of(device_);
+    TerminalProgress terminal;
+    const Progress progress = terminal.callback();
+    if (points_ < 1 || points_ > 1'000'000'000'000) {
+      throw Error("--points", fmt::format("{} is no number of points", points_), "give 1 to 1e12");
+    }
+    if (!canvas_.empty()) {
+      word_of("--canvas", canvas_, {"native", "gl", "worst"}, "no canvas",
+              "give native, gl or worst");
+    }
+    if (!device.empty() && canvas_ != "" && canvas_ != "gl") {
+      throw Error("--device", "the " + canvas_ + " canvas needs no device",
+                  "leave --device out, or use --canvas gl");
+    }
+    word_of("--offset", offset_, {"obb", "exact"}, "no offset", "give obb or exact");
+    const RadiusRule rule = parse_radius(radius_);
+    const Fattener fattener = offset_ == "exact" ? minkowski_fattener() : obb_fattener();
+    LemmaCanvas on(canvas_, device, fattener);
+    const Stopwatch watch;
+    LemmaSettings settings;
+    settings.points = points_;
+    settings.seed = seed_;
+    // What is drawn gets errors as large as those of doubles, except by GL: its own errors would
+    // hide them.
+    settings.displace = on.name != "gl";
+    settings.radius = [&rule](const Budget& budget, double step) {
+      return lemma_radius(rule, budget, step);
+    };
+    const std::string name = rule.published ? "published" : fmt::format("{}", rule.factor);
+    const auto named = [&](const ProgressStep& step) {
+      progress("radius " + name + ", " + text_of(step));
+    };
+    const std::vector<LemmaRow> rows =
+        lemma_experiment(*on.canvas, fattener, settings, progress ? named : Progress{});
+    const double seconds = watch.ms() / 1000;
+    terminal.clear();
+    if (outputs.json) write_json(to_json(on, rule, seconds, rows), *outputs.json);
+    if (!outputs.to_stdout()) {
+      print(fmt::format("canvas {}, offset {}, {}\n\nradius {}\n{}\ntook {:.1f} s\n", on.name,
+                        offset_,
+                        on.name == "gl"       ? on.info()->renderer
+                        : on.name == "native" ? "lanes of " + lane_target()
+                                              : "no device",
+                        name, table_of(rows), seconds));
+    }
+    const bool guaranteed = !rule.published && rule.factor >= 1;
+    return guaranteed && lemma_total(rows).violations() > 0 ? kExitBroken : kExitDone;
+  }
 
  private:
-  LemmaArguments arguments_;
-  Text device_;
+  Json to_json(LemmaCanvas& on, const RadiusRule& rule, double seconds,
+               const std::vector<LemmaRow>& rows) const {
+    Json device;
+    if (const GlInfo* gl = on.info())
+      device = {{"vendor", gl->vendor}, {"renderer", gl->renderer}, {"version", gl->version}};
+    const bool native = on.name == "native";
+    Json out = {{"experiment", "lemma"},
+                {"canvas", on.name},
+                {"offset", offset_},
+                {"device", device},
+                {"subpixel_bits", native ? Json() : Json(on.canvas->limits().subpixel_bits)},
+                {"lanes", native ? Json(lane_target()) : Json()},
+                {"seed", seed_},
+                {"seconds", seconds},
+                {"commit", FARCULL_COMMIT},
+                {"radius", rule.published ? Json("published") : Json(rule.factor)}};
+    out.update(numbers_json(lemma_total(rows)));
+    out["generators"] = Json::array();
+    for (const LemmaRow& row : rows) {
+      Json& one = out["generators"].emplace_back(Json{{"generator", row.generator}});
+      one.update(numbers_json(row));
+    }
+    return out;
+  }
+
+  std::uint64_t points_ = 100000, seed_ = 1;
+  std::string radius_ = "budget", offset_ = "obb";
+  std::string canvas_;  // empty: the canvas of --device, or, without a device, gl if hardware
+                        // answers and passes its probes, else native
+  Text device_, json_;
 };
-
-CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
-  return add_command(
-      experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic",
-      {{"--points", &arguments_.points, "N", "points in all; default 100000"},
-       {"--radius", &arguments_.radius, "RADIUS",
-        "budget, published, or a factor on the budget;\ndefault budget"},
-       {"--canvas", &arguments_.canvas, "native|gl|worst",
-        "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
-        "allow); default gl where\n--device is given or hardware answers, else native"},
-       {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
-       {"--seed", &arguments_.seed, "N", "of the points; default 1"},
-       {"--device", &device_, "DEVICE", kDeviceHelp},
-       {"--json", &arguments_.outputs.json, "FILE", kJsonHelp}},
-      "Examples:\n"
-      "  farcull experiment lemma --points 1000000 --radius budget\n"
-      "  farcull experiment lemma --radius published\n"
-      "  farcull experiment lemma --canvas worst --radius 0.9999\n\n"
-      "Exit status 1: a violation at the budget radius or beyond.");
-}
-
-// Prints the rows; writes --json.
-int LemmaCommand::run() {
-  LemmaArguments& arguments = arguments_;
-  const Outputs outputs = arguments.outputs = checked(arguments.outputs, {});
-  arguments.device = device_of(device_);
-  TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  validate(arguments);
-  const RadiusRule rule = parse_radius(arguments.radius);
-  const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
-  LemmaCanvas on(arguments, fattener);
-  const Stopwatch watch;
-  const Result result = measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress);
-  const bool guaranteed = !rule.published && rule.factor >= 1;
-  const double seconds = watch.ms() / 1000;
-  terminal.clear();
-  if (outputs.json) write_json(to_json(arguments, on, seconds, result), *outputs.json);
-  if (!outputs.to_stdout()) print(text_of(arguments, on, seconds, result));
-  return guaranteed && lemma_total(result.rows).violations() > 0 ? kExitBroken : kExitDone;
-}
 
 }  // namespace
 

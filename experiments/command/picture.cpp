@@ -46,28 +46,6 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-// Checks the files of the picture and the page of a command that reads `inputs`.
-Outputs checked_outputs(const Text& picture, const Text& page,
-                        const std::vector<NamedFile>& inputs) {
-  if (!page && (!picture || picture->empty())) {
-    throw Error("-o", "it does not say where the picture goes",
-                "give -o FILE.png, or -o - for standard output, or --html FILE for a page");
-  }
-  const Outputs out = checked({.picture = picture, .page = page}, inputs);
-  if (out.page == "-")
-    throw Error("--html", "a page does not go to standard output", "give --html FILE.html");
-  const std::string ending = picture ? fs::path(*picture).extension().string() : "";
-  if (!ending.empty() && lower_case(ending) != ".png") {
-    throw Error("-o", "'" + *picture + "' is not named like a PNG, the only format that is written",
-                "give -o " + fs::path(*picture).replace_extension(".png").string());
-  }
-  if (out.picture == "-" && is_terminal(stdout)) {
-    throw Error("-o", "standard output is a terminal, which shows no PNG",
-                "let it go somewhere, or give -o FILE.png");
-  }
-  return out;
-}
-
 }  // namespace
 
 CLI::App* PictureCommand::add_to(CLI::App& app) {
@@ -112,17 +90,6 @@ CLI::App* PictureCommand::add_to(CLI::App& app) {
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
-RunOptions PictureCommand::usual_options() const {
-  RunOptions usual;
-  usual.device = farcull::device_of(device_);
-  usual.verify = false;
-  if (resolution_) usual.resolution = parse_resolution(*resolution_);
-  take_given("radius", radius_, usual);
-  take_given("offset", offset_, usual);
-  take_given("depth", depth_, usual);
-  return usual;
-}
-
 PictureArguments PictureCommand::arguments() const {
   PictureArguments out;
   out.scene = scene_;
@@ -141,7 +108,12 @@ PictureArguments PictureCommand::arguments() const {
   out.view = view_.value_or("");
   out.up = up_.value_or("");
 
-  RunOptions usual = usual_options();
+  RunOptions usual{.device = device_of(device_), .verify = false};  // what all panels share
+  for (const auto& [name, text] :
+       {std::pair("resolution", resolution_), std::pair("radius", radius_),
+        std::pair("offset", offset_), std::pair("depth", depth_)}) {
+    if (text) take_option(name, *text, usual);
+  }
   if (method_ && compare_)
     throw Error("--compare", "names the methods, and so does --method", "give one of the two");
   bool far = false;
@@ -175,6 +147,7 @@ PictureArguments PictureCommand::arguments() const {
   return out;
 }
 
+// The contents of the page of --html, from the arguments of its flat picture.
 PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
   PageArguments out;
   out.picture = picture;
@@ -207,8 +180,23 @@ int PictureCommand::run() const {
   check_scene(arguments.scene.names);
   std::optional<FrameRange> range = arguments.frames;
   if (arguments.frame && !range) range = FrameRange{*arguments.frame, *arguments.frame};
-  const Outputs outputs =
-      checked_outputs(output_, html_, scene_files(arguments.scene.names, range));
+  const std::vector<NamedFile> inputs = scene_files(arguments.scene.names, range);
+  if (!html_ && (!output_ || output_->empty())) {
+    throw Error("-o", "it does not say where the picture goes",
+                "give -o FILE.png, or -o - for standard output, or --html FILE for a page");
+  }
+  const Outputs outputs = checked({.picture = output_, .page = html_}, inputs);
+  if (outputs.page == "-")
+    throw Error("--html", "a page does not go to standard output", "give --html FILE.html");
+  const std::string ending = output_ ? fs::path(*output_).extension().string() : "";
+  if (!ending.empty() && lower_case(ending) != ".png") {
+    throw Error("-o", "'" + *output_ + "' is not named like a PNG, the only format that is written",
+                "give -o " + fs::path(*output_).replace_extension(".png").string());
+  }
+  if (outputs.picture == "-" && is_terminal(stdout)) {
+    throw Error("-o", "standard output is a terminal, which shows no PNG",
+                "let it go somewhere, or give -o FILE.png");
+  }
   PageArguments page_arguments;
   if (html_) {
     page_arguments = this->page_arguments(arguments);

@@ -21,34 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-class ReportCommand {
- public:
-  CLI::App* add_to(CLI::App& app);
-  int run();
-
- private:
-  std::string folder_;
-  Text device_;
-  bool no_pictures_ = false;
-};
-
-CLI::App* ReportCommand::add_to(CLI::App& app) {
-  folder_ = kResultsFolder;
-  return add_command(
-      app, "report", "figures, tables and a page of what was measured",
-      {{"DIR", &folder_, "", fmt::format("the folder of the results; default {}", kResultsFolder)},
-       {"--device", &device_, "DEVICE", kDeviceHelp},
-       {"--no-pictures", &no_pictures_, "",
-        "leave out the pictures of scenes, for which methods are\nrun"}},
-      "Writes DIR/report: index.html, one page that needs nothing else; figures as "
-      "SVG and PDF with\ntheir numbers as CSV; tables as CSV and LaTeX. An earlier "
-      "report there is replaced. It needs\nPython with pandas and matplotlib; "
-      "FARCULL_PYTHON names another interpreter than python3.\n\n"
-      "Examples:\n"
-      "  farcull experiment all --quick && farcull report\n"
-      "  farcull report results");
-}
-
 // The path of the store in the folder. Throws Error if there is none; if there are shards that are
 // not merged, the remedy is to merge them.
 std::string store_of(const std::string& folder) {
@@ -63,19 +35,6 @@ std::string store_of(const std::string& folder) {
       throw Error(folder, "holds shards that are not merged", "farcull merge " + folder);
   }
   throw Error(folder, "holds no results.sqlite", remedy);
-}
-
-// The report replaces everything in its folder, so the store must be elsewhere.
-void check_store_outside(const std::string& folder) {
-  std::error_code error;
-  const auto place = [&](const std::string& path) {
-    return fs::weakly_canonical(path, error).string();
-  };
-  const std::string report = place(folder + "/report");
-  if (!error && place(store_path(folder)).starts_with(report + "/")) {
-    throw Error(store_path(folder), "leads into DIR/report, which the report replaces",
-                "move the results out of it");
-  }
 }
 
 // JSON about this program for the Python program.
@@ -99,25 +58,59 @@ std::string context_for_python() {
       .dump();
 }
 
-int ReportCommand::run() {
-  if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
-  while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
-  check_store_outside(folder_);
-  std::vector<std::string> words = {"-B", report_folder(FARCULL_REPORT_FOLDER), folder_};
-  {
-    const Store store(store_of(folder_), Store::Access::read);
-    for (const std::string& name : store.studies()) {
-      if (store.declaration(name)->of > 1)
-        throw Error(store.path(), "holds a shard of " + name, "farcull merge " + folder_);
-    }
+class ReportCommand {
+ public:
+  CLI::App* add_to(CLI::App& app) {
+    folder_ = kResultsFolder;
+    return add_command(
+        app, "report", "figures, tables and a page of what was measured",
+        {{"DIR", &folder_, "",
+          fmt::format("the folder of the results; default {}", kResultsFolder)},
+         {"--device", &device_, "DEVICE", kDeviceHelp},
+         {"--no-pictures", &no_pictures_, "",
+          "leave out the pictures of scenes, for which methods are\nrun"}},
+        "Writes DIR/report: index.html, one page that needs nothing else; figures as "
+        "SVG and PDF with\ntheir numbers as CSV; tables as CSV and LaTeX. An earlier "
+        "report there is replaced. It needs\nPython with pandas and matplotlib; "
+        "FARCULL_PYTHON names another interpreter than python3.\n\n"
+        "Examples:\n"
+        "  farcull experiment all --quick && farcull report\n"
+        "  farcull report results");
   }
-  words.push_back(context_for_python());
-  if (no_pictures_) words.push_back("--no-pictures");
-  if (device_) words.push_back("--device=" + *device_);
-  become_python(std::move(words),
-                "install it (Debian: python3-matplotlib python3-pandas), or run "
-                "experiments/setup.sh");
-}
+  int run() {
+    if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
+    while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
+    // The report replaces everything in its folder, so the store must be elsewhere.
+    std::error_code error;
+    const auto place = [&](const std::string& path) {
+      return fs::weakly_canonical(path, error).string();
+    };
+    const std::string report = place(folder_ + "/report");
+    if (!error && place(store_path(folder_)).starts_with(report + "/")) {
+      throw Error(store_path(folder_), "leads into DIR/report, which the report replaces",
+                  "move the results out of it");
+    }
+    std::vector<std::string> words = {"-B", report_folder(FARCULL_REPORT_FOLDER), folder_};
+    {
+      const Store store(store_of(folder_), Store::Access::read);
+      for (const std::string& name : store.studies()) {
+        if (store.declaration(name)->of > 1)
+          throw Error(store.path(), "holds a shard of " + name, "farcull merge " + folder_);
+      }
+    }
+    words.push_back(context_for_python());
+    if (no_pictures_) words.push_back("--no-pictures");
+    if (device_) words.push_back("--device=" + *device_);
+    become_python(std::move(words),
+                  "install it (Debian: python3-matplotlib python3-pandas), or run "
+                  "experiments/setup.sh");
+  }
+
+ private:
+  std::string folder_;
+  Text device_;
+  bool no_pictures_ = false;
+};
 
 }  // namespace
 

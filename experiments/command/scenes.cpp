@@ -66,81 +66,67 @@ std::string suffixes_text() {
 
 class ScenesCommand {
  public:
-  CLI::App* add_to(CLI::App& app);
-  int run() const;
+  CLI::App* add_to(CLI::App& app) {
+    return add_command(
+        app, "scenes", "the built-in scenes with their sizes; one of them as meshes",
+        {{"NAME", &name_, "", "the scene to write, with its numbers and suffixes"},
+         {"--write", &folder_, "DIR",
+          "write the scene as meshes, one an object, and\nscene.json into this folder, "
+          "which is made if its\nparent is there; files of these names are replaced"},
+         {"--json", &outputs_.json, "FILE", kJsonHelp}},
+        std::string("Examples:\n"
+                    "  farcull scenes\n"
+                    "  farcull run crowd@ground\n"
+                    "  farcull scenes crowd:3000:0.2 --write crowd\n\n") +
+            kFrameZero);
+  }
+  int run() const {
+    if (!name_) {
+      if (folder_) {
+        throw Error("--write", "no scene is named",
+                    "name one, as in farcull scenes two-spheres --write DIR");
+      }
+      const Outputs outputs = checked(outputs_, {});
+      Json all = Json::array();
+      Table table("lrrrl");
+      table.add({"scene", "objects", "triangles", "seed", ""});
+      for (const BuiltinScene& scene : builtin_scenes()) {
+        table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
+                   scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
+        all.push_back(to_json(scene));
+      }
+      if (outputs.json) write_json(all, *outputs.json);
+      if (!outputs.to_stdout()) {
+        print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
+      }
+      return 0;
+    }
+    parse_scene_name(*name_);
+    if (!folder_) {
+      throw Error(*name_, "is named, but not what to do with it",
+                  "give --write DIR, or leave the name out for the list of scenes");
+    }
+    if (folder_->empty()) throw Error("--write", "the folder's name is empty", "name a folder");
+    if (outputs_.json) {
+      throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
+    }
+    check_output("-");
+    // Files of the folder may be replaced, but not the meshes that the scene is made of.
+    std::vector<NamedFile> there;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))
+      there.push_back({"--write", entry.path().string()});
+    require_not_read(scene_files({*name_}), there);
+    const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
+    print(fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
+                      counted(written.bytes, "byte", "bytes"), written.scene_file));
+    return 0;
+  }
 
  private:
-  void list(const Outputs& outputs) const;
-  void write() const;
-
   Text name_, folder_;
   Outputs outputs_;
 };
-
-CLI::App* ScenesCommand::add_to(CLI::App& app) {
-  return add_command(
-      app, "scenes", "the built-in scenes with their sizes; one of them as meshes",
-      {{"NAME", &name_, "", "the scene to write, with its numbers and suffixes"},
-       {"--write", &folder_, "DIR",
-        "write the scene as meshes, one an object, and\nscene.json into this folder, "
-        "which is made if its\nparent is there; files of these names are replaced"},
-       {"--json", &outputs_.json, "FILE", kJsonHelp}},
-      std::string("Examples:\n"
-                  "  farcull scenes\n"
-                  "  farcull run crowd@ground\n"
-                  "  farcull scenes crowd:3000:0.2 --write crowd\n\n") +
-          kFrameZero);
-}
-
-int ScenesCommand::run() const {
-  if (!name_) {
-    if (folder_) {
-      throw Error("--write", "no scene is named",
-                  "name one, as in farcull scenes two-spheres --write DIR");
-    }
-    list(checked(outputs_, {}));
-    return 0;
-  }
-  parse_scene_name(*name_);
-  if (!folder_) {
-    throw Error(*name_, "is named, but not what to do with it",
-                "give --write DIR, or leave the name out for the list of scenes");
-  }
-  if (folder_->empty()) throw Error("--write", "the folder's name is empty", "name a folder");
-  if (outputs_.json) {
-    throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
-  }
-  check_output("-");
-  // Files of the folder may be replaced, but not the meshes that the scene is made of.
-  std::vector<NamedFile> there;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))
-    there.push_back({"--write", entry.path().string()});
-  require_not_read(scene_files({*name_}), there);
-  write();
-  return 0;
-}
-
-void ScenesCommand::list(const Outputs& outputs) const {
-  Json all = Json::array();
-  Table table("lrrrl");
-  table.add({"scene", "objects", "triangles", "seed", ""});
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
-               scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
-    all.push_back(to_json(scene));
-  }
-  if (outputs.json) write_json(all, *outputs.json);
-  if (!outputs.to_stdout()) {
-    print(table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
-  }
-}
-
-void ScenesCommand::write() const {
-  const WrittenScene written = write_scene(make_builtin_scene(*name_), *folder_);
-  print(fmt::format("{}, {}\nfarcull run {}\n", counted(written.files, "file", "files"),
-                    counted(written.bytes, "byte", "bytes"), written.scene_file));
-}
 
 }  // namespace
 

@@ -12,16 +12,6 @@
 namespace farcull {
 namespace {
 
-SuiteSettings settings_of(const Text& size, const Text& seed) {
-  SuiteSettings out;
-  if (word_of("--size", size, {"small", "full"}, "no size", "give small or full") == 1)
-    out.size = SuiteSize::full;
-  if (seed)
-    out.seed = number_of<std::uint64_t>("--seed", *seed, "no whole number", 0, UINT64_MAX,
-                                        "give 0 or more");
-  return out;
-}
-
 std::string pairs_table(const std::vector<SuiteCounts>& families) {
   Table table("lrrrrrrrrrrr");
   std::vector<std::string> head = {"pairs", "all", "collide"};
@@ -52,54 +42,56 @@ std::string meshes_table(const std::vector<SuiteCounts>& meshes) {
 
 class SuiteCommand {
  public:
-  CLI::App* add_to(CLI::App& app);
-  int run() const;
+  CLI::App* add_to(CLI::App& app) {
+    return add_command(
+        app, "suite", "labelled triangle pairs and meshes, to test any library with",
+        {{"DIR", &folder_, "", "the folder to write, which must not exist or be empty", Need::must},
+         {"--size", &size_, "small|full",
+          "small: 10,070 pairs and 59 meshes, seconds (default);\nfull: 1,007,000 pairs and "
+          "87 meshes, minutes"},
+         {"--seed", &seed_, "N", "seed of all draws; default 1"},
+         {"--ask", &ask_, "COMMAND",
+          "ask the program that COMMAND starts about the suite in\nDIR, and print what it gets "
+          "wrong (docs/ask.md)"}},
+        "Examples:\n"
+        "  farcull suite pairs-and-meshes\n"
+        "  farcull suite large --size full\n"
+        "  farcull suite pairs-and-meshes --ask 'python3 my_library.py'\n\n"
+        "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
+        "and integers; a disagreement ends the command. The files depend on the size and the\nseed "
+        "alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without farcull.");
+  }
+  int run() const {
+    if (folder_.empty()) throw Error("DIR", "the folder's name is empty", "name a folder");
+    if (ask_ && (size_ || seed_))
+      throw Error("--ask", "the suite itself says its size and its seed",
+                  "leave --size and --seed out");
+    if (ask_) {
+      become_python({"-I", "-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
+                    "install Python 3.8 or later");
+    }
+    SuiteSettings settings;
+    if (word_of("--size", size_, {"small", "full"}, "no size", "give small or full") == 1)
+      settings.size = SuiteSize::full;
+    if (seed_) {
+      settings.seed = number_of<std::uint64_t>("--seed", *seed_, "no whole number", 0, UINT64_MAX,
+                                               "give 0 or more");
+    }
+    check_output("-");
+    TerminalProgress terminal;
+    const SuiteSummary summary = write_suite(folder_, settings, terminal.callback());
+    write_output(folder_ + "/ask.py", embedded::ask_py);
+    terminal.clear();
+    print(pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
+          fmt::format("\nwritten to {}: seed {}, size {}\nsum {}\n", folder_, summary.index.seed,
+                      summary.index.size, summary.index.sum));
+    return kExitDone;
+  }
 
  private:
   std::string folder_;
   Text size_, seed_, ask_;
 };
-
-CLI::App* SuiteCommand::add_to(CLI::App& app) {
-  return add_command(
-      app, "suite", "labelled triangle pairs and meshes, to test any library with",
-      {{"DIR", &folder_, "", "the folder to write, which must not exist or be empty", Need::must},
-       {"--size", &size_, "small|full",
-        "small: 10,070 pairs and 59 meshes, seconds (default);\nfull: 1,007,000 pairs and "
-        "87 meshes, minutes"},
-       {"--seed", &seed_, "N", "seed of all draws; default 1"},
-       {"--ask", &ask_, "COMMAND",
-        "ask the program that COMMAND starts about the suite in\nDIR, and print what it gets "
-        "wrong (docs/ask.md)"}},
-      "Examples:\n"
-      "  farcull suite pairs-and-meshes\n"
-      "  farcull suite large --size full\n"
-      "  farcull suite pairs-and-meshes --ask 'python3 my_library.py'\n\n"
-      "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
-      "and integers; a disagreement ends the command. The files depend on the size and the\nseed "
-      "alone. docs/suite.md has the format. DIR/ask.py does what --ask does, without farcull.");
-}
-
-int SuiteCommand::run() const {
-  if (folder_.empty()) throw Error("DIR", "the folder's name is empty", "name a folder");
-  if (ask_ && (size_ || seed_))
-    throw Error("--ask", "the suite itself says its size and its seed",
-                "leave --size and --seed out");
-  if (ask_) {
-    become_python({"-I", "-B", "-c", embedded::ask_py, "--suite", folder_, "--", *ask_},
-                  "install Python 3.8 or later");
-  }
-  const SuiteSettings settings = settings_of(size_, seed_);
-  check_output("-");
-  TerminalProgress terminal;
-  const SuiteSummary summary = write_suite(folder_, settings, terminal.callback());
-  write_output(folder_ + "/ask.py", embedded::ask_py);
-  terminal.clear();
-  print(pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
-        fmt::format("\nwritten to {}: seed {}, size {}\nsum {}\n", folder_, summary.index.seed,
-                    summary.index.size, summary.index.sum));
-  return kExitDone;
-}
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // The scene is written as 64-bit words, lowest byte first, so that the proved checker needs no
 // reader of meshes: the number of objects, the sizes of the objects, then all coordinates.
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -12,16 +12,13 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
-#include <utility>
 
 #include "core/base/bytes.h"
-#include "core/base/error.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -32,43 +29,6 @@ constexpr const char* kRemedy =
     "install coq, ocaml-findlib and libzarith-ocaml-dev and build again, or leave --verified out";
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
-
-std::string program() {
-  std::error_code error;
-  const std::filesystem::path beside =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
-  return std::filesystem::exists(beside, error) ? beside.string() : kProgram;
-}
-
-// Writes words, lowest byte first, and hashes them.
-class WordFile {
- public:
-  explicit WordFile(std::FILE* file) : file_(file) {}
-  void add(std::uint64_t word) {
-    for (int k = 0; k < 8; ++k, word >>= 8) block_ += static_cast<char>(word);
-    if (block_.size() >= (std::size_t{1} << 16)) flush();
-  }
-  void flush() {
-    std::fwrite(block_.data(), 1, block_.size(), file_);
-    hash_.add(block_);
-    block_.clear();
-  }
-  std::string digest() { return hash_.digest(); }
-
- private:
-  std::FILE* file_;
-  std::string block_;
-  Sha256 hash_;
-};
-
-std::string sha256_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  Sha256 hash;
-  std::string block(std::size_t{1} << 16, '\0');
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    hash.add(std::string_view(block).substr(0, static_cast<std::size_t>(file.gcount())));
-  return hash.digest();
-}
 
 // Throws Error unless the checker's output is about these files, and its verdict fits its exit
 // status. So another program in its place, or other files, prove nothing.
@@ -89,43 +49,41 @@ void require_said(const std::string& said, const std::vector<std::string>& certi
     refuse("ended with a status that is not that of its verdict");
 }
 
-}  // namespace
-
-void give_coordinates(const Scene& scene, const TakeWord& take) {
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    for (const Vec3& p : scene.corners(t)) {
-      for (int i = 0; i < 3; ++i) take(std::bit_cast<std::uint64_t>(p[i]));
-    }
-  }
-}
-
-void give_words(const Scene& scene, const TakeWord& take) {
-  take(scene.objects.size());
-  for (const Object& object : scene.objects)
-    take(object.triangle_count | std::uint64_t{object.self} << 32);
-  give_coordinates(scene, take);
-}
-
+// Runs the proved checker. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
+// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order. The
+// words of the scene go to the checker through a file in memory.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words) {
   // The new process inherits the descriptor, and opens the file by its number.
   const int memory = ::memfd_create("scene", 0);
   std::FILE* file = memory < 0 ? nullptr : ::fdopen(memory, "wb");
   if (file == nullptr) refuse(std::string("no file in memory: ") + std::strerror(errno));
-  WordFile out(file);
-  words([&](std::uint64_t word) { out.add(word); });
-  out.flush();
+  Sha256 hash;
+  std::string block;
+  const auto flush = [&] {
+    std::fwrite(block.data(), 1, block.size(), file);
+    hash.add(block);
+    block.clear();
+  };
+  words([&](std::uint64_t word) {
+    for (int k = 0; k < 8; ++k, word >>= 8) block += static_cast<char>(word);
+    if (block.size() >= (std::size_t{1} << 16)) flush();
+  });
+  flush();
   const bool written = std::fflush(file) == 0 && std::ferror(file) == 0;
   std::vector<std::string> hashes;
   for (const std::string& certificate : certificates) {
-    hashes.push_back(sha256_of_file(certificate));
+    hashes.push_back(sha256(read_file(certificate, kMaxCheckedBytes)));
     print("checked    certificate sha256 " + hashes.back() + "\n");
   }
-  const std::string scene = out.digest();
+  const std::string scene = hash.digest();
   print("checked    scene       sha256 " + scene + "\n");
   std::fflush(stdout);
 
-  std::string path = program();
+  std::error_code none;
+  const std::filesystem::path beside =
+      std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kProgram;
+  std::string path = std::filesystem::exists(beside, none) ? beside.string() : kProgram;
   std::vector<std::string> given = certificates;
   given.push_back("/proc/self/fd/" + std::to_string(memory));
   std::string option = "--tiles";
@@ -153,11 +111,11 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   int status = 0;
   std::string said;
   if (error == 0) {
-    std::array<char, 4096> block;
-    for (ssize_t size = 0; (size = ::read(pipe[0], block.data(), block.size())) != 0;) {
+    std::array<char, 4096> some;
+    for (ssize_t size = 0; (size = ::read(pipe[0], some.data(), some.size())) != 0;) {
       if (size < 0 && errno == EINTR) continue;
       if (size < 0) break;
-      said.append(block.data(), static_cast<std::size_t>(size));
+      said.append(some.data(), static_cast<std::size_t>(size));
     }
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
@@ -180,6 +138,31 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   constexpr int kUnread = 2;
   if (WEXITSTATUS(status) != kUnread) require_said(said, hashes, scene, WEXITSTATUS(status) == 0);
   return WEXITSTATUS(status);
+}
+
+}  // namespace
+
+void give_coordinates(const Scene& scene, const TakeWord& take) {
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) {
+      for (int i = 0; i < 3; ++i) take(std::bit_cast<std::uint64_t>(p[i]));
+    }
+  }
+}
+
+void give_words(const Scene& scene, const TakeWord& take) {
+  take(scene.objects.size());
+  for (const Object& object : scene.objects)
+    take(object.triangle_count | std::uint64_t{object.self} << 32);
+  give_coordinates(scene, take);
+}
+
+void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
+                 const std::function<void(const TakeWord&)>& words, int status) {
+  const int verified = run_verified_checker(files, arguments.tiles.has_value(), words);
+  if ((verified == kExitDone) == (status == kExitDone)) return;
+  throw Error("--verified", "the two checkers disagree about " + clean_name(arguments.certificate),
+              "keep the certificate and the scene, and report them: one of the checkers is wrong");
 }
 
 }  // namespace farcull

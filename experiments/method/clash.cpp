@@ -240,23 +240,18 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   return out;
 }
 
-std::vector<Vec3> starts_of(const ClashRow& row) {
-  constexpr std::size_t kStarts = 16;
-  std::vector<Vec3> starts = {row.witness[0]};
-  if (!row.box.is_empty()) starts.push_back(0.5 * row.box.lo + 0.5 * row.box.hi);
-  const std::size_t stride = row.segments.size() / kStarts + 1;
-  for (std::size_t k = 0; k < row.segments.size(); k += stride)
-    starts.push_back(0.5 * row.segments[k][0] + 0.5 * row.segments[k][1]);
-  return starts;
-}
-
 /// Bounds the depth, if asked for. An overlap becomes a touch if the upper bound of its depth is at
 /// most the tolerance; else sets ClashRow::shallow. pairs: the triangles that meet; none for a
 /// containment. Precondition: both objects are closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
-  const std::vector<Vec3> starts = starts_of(row);
+  constexpr std::size_t kStarts = 16;
+  std::vector<Vec3> starts = {row.witness[0]};
+  if (!row.box.is_empty()) starts.push_back(0.5 * row.box.lo + 0.5 * row.box.hi);
+  const std::size_t stride = row.segments.size() / kStarts + 1;
+  for (std::size_t k = 0; k < row.segments.size(); k += stride)
+    starts.push_back(0.5 * row.segments[k][0] + 0.5 * row.segments[k][1]);
   if (options.depth && row.proved) row.depth = penetration(a, b, starts, options.threads);
   const double tolerance = options.tolerance;
   if (tolerance == 0) return;

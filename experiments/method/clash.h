@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/fields.h"
 #include "core/base/stage.h"
 #include "core/scene/scene.h"
 #include "experiments/method/run.h"
@@ -83,8 +82,7 @@ struct ClashRecord {
   std::uint64_t within_tolerance = 0;  // of these, pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
   /// At most 100 pairs that may be one part twice: they have equally many triangles, and the same
-  /// box
-  /// but for rounding to floats.
+  /// box but for rounding to floats.
   std::vector<ObjectPair> copies;
   /// The smallest and the largest object, if their sizes differ by a factor of 100 or more.
   std::optional<ObjectPair> sizes;

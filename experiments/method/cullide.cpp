@@ -148,31 +148,6 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
   out.by = std::move(views);
 }
 
-Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool full) {
-  Stage stage{.kind = StageKind::boxes,
-              .ran = true,
-              .reason = Reason::full,
-              .in = scene.triangles.size(),
-              .out = regions.triangles.size(),
-              .unit = Unit::triangles};
-  if (full) return stage;
-  if (self) {
-    for (const Object& object : scene.objects) stage.m += object.self && object.triangle_count > 1;
-  }
-  stage.reason = self ? Reason::meetings : Reason::regions;
-  stage.n = regions.places.size() - stage.m;
-  return stage;
-}
-
-// Puts back triangles that were culled by drawing, but belong to a candidate pair of one patch.
-void add_members(const Scene& scene, Candidates& out) {
-  const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
-  std::vector<std::uint32_t> all;
-  std::set_union(out.triangles.begin(), out.triangles.end(), members.begin(), members.end(),
-                 std::back_inserter(all));
-  out.triangles = std::move(all);
-}
-
 // Compares boxes of objects, as published, to find which triangles take part, and in which regions.
 void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
@@ -183,8 +158,20 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   const Stopwatch watch;
   const bool self = work.self || work.patches.cut;
   work.regions = find_regions(scene, {.self = self, .full = options.full});
-  plan.trace.push_back(boxes_stage(scene, work.regions, self, options.full));
-  plan.trace.back().ms = watch.ms();
+  Stage stage{.kind = StageKind::boxes,
+              .ran = true,
+              .reason = Reason::full,
+              .in = scene.triangles.size(),
+              .out = work.regions.triangles.size(),
+              .unit = Unit::triangles};
+  if (!options.full) {
+    for (const Object& object : scene.objects)
+      stage.m += self && object.self && object.triangle_count > 1;
+    stage.reason = self ? Reason::meetings : Reason::regions;
+    stage.n = work.regions.places.size() - stage.m;
+  }
+  stage.ms = watch.ms();
+  plan.trace.push_back(stage);
 }
 
 // Finds all pairs of triangles whose boxes overlap. False: this would cull too little here.
@@ -229,17 +216,6 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   return true;
 }
 
-// The stage that says why there is nothing to draw. Precondition: no triangle takes part.
-Stage nothing_to_draw(const DrawPlan& work) {
-  return {.kind = StageKind::draw,
-          .reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
-                        ? Reason::nothing_to_look_at
-                    : work.pairs                  ? Reason::no_box_pairs
-                    : work.regions.places.empty() ? Reason::no_boxes_overlap
-                                                  : Reason::no_triangle_meets,
-          .unit = Unit::triangles};
-}
-
 }  // namespace
 
 void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
@@ -258,7 +234,14 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   work.settings = settings_of(options, work.regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
   if (work.regions.triangles.empty()) {
-    plan.trace.push_back(nothing_to_draw(work));
+    plan.trace.push_back(
+        {.kind = StageKind::draw,
+         .reason = work.patches.count > 0 || (work.pairs && !work.pairs->other.empty())
+                       ? Reason::nothing_to_look_at
+                   : work.pairs                  ? Reason::no_box_pairs
+                   : work.regions.places.empty() ? Reason::no_boxes_overlap
+                                                 : Reason::no_triangle_meets,
+         .unit = Unit::triangles});
   } else {
     work.fatteners = fatteners_of(options);
     CullSettings first = work.settings;
@@ -300,7 +283,11 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   } else if (work.patches.count > 0) {
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
-    add_members(scene, out);
+    // Puts back triangles that were culled by drawing, but belong to a candidate pair of one patch.
+    const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
+    std::vector<std::uint32_t> all;
+    std::ranges::set_union(out.triangles, members, std::back_inserter(all));
+    out.triangles = std::move(all);
   } else {
     out.pairs = box_join(boxes, join_owners(scene), out.triangles, SIZE_MAX, session.threads());
   }

@@ -30,33 +30,6 @@
 namespace farcull {
 namespace {
 
-// The probes of A4 (docs/reliability.md). For both offsets the canvas's fragment program computes
-// intervals of fattened triangles and of solids with random floats. verify/kernel_check makes the
-// cases and counts the losses.
-
-// Runs a probe and measures how much was lost. The probe fails if anything was lost, if answers are
-// loose too often, if nothing was checked, or if it breaks off with an Error.
-ProbeResult result(const std::string& name, const std::string& tried,
-                   const std::function<KernelTally()>& run) {
-  ProbeResult out{.assumption = "A4", .name = name, .unit = "lost", .note = {}};
-  try {
-    const KernelTally t = run();
-    const bool loose = static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
-    out.measured = static_cast<double>(t.lost);
-    out.samples = t.checked;
-    out.pass = t.checked > 0 && t.lost == 0 && !loose;
-    out.note = tried;
-    if (t.ordinary > 0) {
-      out.note += "; " + std::to_string(t.loose) + " of " + std::to_string(t.ordinary) +
-                  " ordinary ones wider than exact by 0.1 px" + (loose ? ": TOO MANY" : "");
-    }
-  } catch (const Error& error) {
-    out.note = error.what();
-    out.broke_off = true;
-  }
-  return out;
-}
-
 // Checks fattened triangles of every kind, then (`direct`) solids with random floats.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
@@ -105,21 +78,18 @@ constexpr std::array kDriverVariables = {
     "TU_",    "V3D_",     "VC4_",     "PAN_",     "LIMA_",  "ETNA_", "SVGA_", "VIRGL_",
     "D3D12_", "ASAHI_",   "AGX_",     "__GL_",    "__GLX_", "PIPE_", "VK_"};
 
-// Mesa also reads each driconf option from the environment variable of its name, in lower case.
-// Other variables in lower case are rare, except those of proxies.
-bool may_be_driconf(const std::string& variable) {
-  const std::string name = variable.substr(0, variable.find('='));
-  return std::none_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) &&
-         name != "_" && !name.ends_with("_proxy");
-}
-
 std::string driver_environment() {
   std::vector<std::string> found;
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
-    if (may_be_driconf(variable) || std::ranges::any_of(kDriverVariables, named))
-      found.push_back(variable);
+    // Mesa also reads each driconf option from the environment variable of its name, in lower case.
+    // Other variables in lower case are rare, except those of proxies.
+    const std::string name = variable.substr(0, variable.find('='));
+    const bool may_be_driconf =
+        std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }) && name != "_" &&
+        !name.ends_with("_proxy");
+    if (may_be_driconf || std::ranges::any_of(kDriverVariables, named)) found.push_back(variable);
   }
   std::sort(found.begin(), found.end());
   std::string out;
@@ -166,17 +136,15 @@ std::string text_of(const VerdictInputs& inputs) {
   return out;
 }
 
+// The file of a verdict, in $XDG_CACHE_HOME/farcull, else in $HOME/.cache/farcull; "" if neither is
+// an absolute path.
 std::string file_of(const std::string& inputs) {
-  const std::string folder = verdict_folder();
-  return folder.empty() ? "" : folder + "/device-" + hash_of(inputs);
-}
-
-// A file: the hash of the lines below it, the inputs, a line of three values, a line per failure.
-std::string file_text(const std::string& inputs, const DeviceVerdict& verdict) {
-  std::ostringstream rest;
-  rest << inputs << verdict.made << ' ' << verdict.probes << ' ' << verdict.ms << '\n';
-  for (const std::string& failure : verdict.failed) rest << failure << '\n';
-  return hash_of(rest.str()) + "\n" + rest.str();
+  const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
+  const char* const cache = std::getenv("XDG_CACHE_HOME");
+  const char* const home = std::getenv("HOME");
+  if (!absolute(cache) && !absolute(home)) return "";
+  const std::string folder = absolute(cache) ? cache : std::string(home) + "/.cache";
+  return folder + "/farcull/device-" + hash_of(inputs);
 }
 
 // Returns nothing if the file is missing, damaged, of another user, or about other inputs.
@@ -217,12 +185,6 @@ std::string write(const std::string& file, const std::string& text) {
   return file + ": " + error.message();
 }
 
-// Removes an older verdict, or invalidates it if the folder allows no removal.
-void forget(const std::string& file) {
-  std::error_code error;
-  if (!file.empty() && !fs::remove(file, error) && error) fs::resize_file(file, 0, error);
-}
-
 }  // namespace
 
 std::vector<SolidKernel> solid_kernels() {
@@ -243,8 +205,26 @@ std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
       "to fail; each is seen behind itself, by the programs with flags and with queries, in both "
       "depth formats";
   std::vector<ProbeResult> out;
-  for (const SolidKernel& kernel : solid_kernels())
-    out.push_back(result(kernel.name, tried, [&] { return solids(context, options, kernel); }));
+  for (const SolidKernel& kernel : solid_kernels()) {
+    out.push_back({.assumption = "A4", .name = kernel.name, .unit = "lost", .note = {}});
+    ProbeResult& of = out.back();
+    try {
+      const KernelTally t = solids(context, options, kernel);
+      const bool loose =
+          static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
+      of.measured = static_cast<double>(t.lost);
+      of.samples = t.checked;
+      of.pass = t.checked > 0 && t.lost == 0 && !loose;
+      of.note = tried;
+      if (t.ordinary > 0) {
+        of.note += "; " + std::to_string(t.loose) + " of " + std::to_string(t.ordinary) +
+                   " ordinary ones wider than exact by 0.1 px" + (loose ? ": TOO MANY" : "");
+      }
+    } catch (const Error& error) {
+      of.note = error.what();
+      of.broke_off = true;
+    }
+  }
   return out;
 }
 
@@ -253,7 +233,7 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
                                     bool brief) {
   std::vector<ProbeResult> out = run_probes(context, {.brief = brief}, started);
   if (started) started("kernels");
-  for (ProbeResult& r : solid_kernel_probes(context, {.brief = brief})) out.push_back(std::move(r));
+  for (ProbeResult& r : solid_kernel_probes(context)) out.push_back(std::move(r));
   std::ranges::stable_sort(out, {}, [](const ProbeResult& r) {
     return std::pair(r.assumption.size(), r.assumption);  // A10 after A2
   });
@@ -302,14 +282,6 @@ VerdictInputs verdict_inputs(const GlInfo& device) {
           {"environment", driver_environment()}};
 }
 
-std::string verdict_folder() {
-  const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
-  const char* const cache = std::getenv("XDG_CACHE_HOME");
-  if (absolute(cache)) return std::string(cache) + "/farcull";
-  const char* const home = std::getenv("HOME");
-  return absolute(home) ? std::string(home) + "/.cache/farcull" : "";
-}
-
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say) {
   const std::string inputs = text_of(verdict_inputs(device));
   if (const std::optional<DeviceVerdict> known = read(file_of(inputs), inputs)) return *known;
@@ -339,10 +311,17 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // Removed first: if a later step fails, no older verdict is left that these results refute.
-  if (!out.holds) forget(file);
+  // An older verdict is removed first, or invalidated if the folder allows no removal: so none is
+  // left that these results refute, even if a later step fails.
+  std::error_code error;
+  if (!out.holds && !file.empty() && !fs::remove(file, error) && error)
+    fs::resize_file(file, 0, error);
   if (!out.holds && out.failed.empty()) return out;
-  out.note = write(file, file_text(inputs, out));
+  // The hash of the lines below it, the inputs, a line of three values, a line per failure.
+  std::ostringstream rest;
+  rest << inputs << out.made << ' ' << out.probes << ' ' << ms << '\n';
+  for (const std::string& failure : out.failed) rest << failure << '\n';
+  out.note = write(file, hash_of(rest.str()) + "\n" + rest.str());
   if (out.note.empty()) out.file = file;
   return out;
 }

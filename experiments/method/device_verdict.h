@@ -30,21 +30,21 @@ struct SolidKernel {
 /// The kernels of both offsets.
 std::vector<SolidKernel> solid_kernels();
 
-/// The members after the first two are deliberate defects, so that tests can see the probes fail.
+/// The members after the first are deliberate defects, so that tests can see the probes fail.
 struct KernelProbeOptions {
   std::uint64_t seed = 1;
-  bool brief = false;        // about a third of the samples
   bool bare = false;         // kernels that widen nothing
   bool late_stores = false;  // stores another solid than the one it asks about
 };
 
-/// Probes solid_interval of both offsets. All functions here make the context current while they
-/// run.
+/// Probes solid_interval of both offsets. A probe fails if anything was lost, if answers are loose
+/// too often, if nothing was checked, or if it breaks off with an Error. All functions here make
+/// the context current while they run.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
 /// Runs run_probes() and the probes of kernels, in the order of the assumptions. started: as for
-/// run_probes(). brief: about a third of the samples.
+/// run_probes(). brief: run_probes() takes about a third of the samples.
 std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {},
                                     bool brief = false);
@@ -74,10 +74,6 @@ std::string to_string(const DeviceVerdict& verdict);
 /// processor (for a software device), and the variables of the environment that drivers read.
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
 VerdictInputs verdict_inputs(const GlInfo& device);
-
-/// The folder of verdicts: $XDG_CACHE_HOME/farcull, else $HOME/.cache/farcull; "" if neither is an
-/// absolute path.
-std::string verdict_folder();
 
 /// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;

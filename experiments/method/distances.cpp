@@ -102,16 +102,6 @@ namespace {
 // Pairs of triangles that one thread decides at a time.
 constexpr std::size_t kTogether = 256;
 
-void check(const DistanceOptions& options) {
-  if (!(options.within >= 0))
-    throw Error("within", "is no distance", "give a number of world units, 0 or more");
-  if (options.pairs == DistancePairs::all && !std::isfinite(options.within))
-    throw Error("within", "is not finite, which pairs of all triangles need",
-                "give a finite number of world units");
-  if (options.pairs == DistancePairs::nearest && options.k == 0)
-    throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
-}
-
 std::vector<ObjectPair> every_two_objects(const Scene& scene) {
   std::vector<ObjectPair> out;
   const auto count = static_cast<std::uint32_t>(scene.objects.size());
@@ -134,36 +124,14 @@ std::uint64_t count_of_questions(const Scene& scene) {
   return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
-// Refuses too many pairs of objects: each takes memory from the start, and more for its answer.
-void require_few_questions(const Scene& scene, const DistanceOptions& options) {
-  if (options.pairs != DistancePairs::objects || std::isfinite(options.within)) return;
-  const std::uint64_t questions = count_of_questions(scene);
-  if (questions <= options.most_pairs) return;
-  throw Error("scene",
-              "has " + std::to_string(questions) + " pairs of objects, and at most " +
-                  std::to_string(options.most_pairs) + " are answered",
-              "ask for the nearest objects of each ({pairs} nearest), or for the triangles within "
-              "a distance ({pairs} all {within} D)");
-}
-
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
-                                                   const DistanceMemory* memory) {
-  if (memory == nullptr || memory->objects.empty()) return {};
+                                                   std::span<const NearHint> hints) {
+  if (hints.empty()) return {};
   std::vector<std::optional<TrianglePair>> out(questions.size());
   for (std::size_t k = 0; k < questions.size(); ++k) {
-    const auto found = std::ranges::lower_bound(memory->objects, questions[k]);
-    if (found != memory->objects.end() && *found == questions[k])
-      out[k] = memory->nearest[static_cast<std::size_t>(found - memory->objects.begin())];
+    const auto found = std::ranges::lower_bound(hints, questions[k], {}, &NearHint::objects);
+    if (found != hints.end() && found->objects == questions[k]) out[k] = found->triangles;
   }
-  return out;
-}
-
-// The nearest pairs of the previous frame.
-std::vector<NearHint> hints_of(const DistanceMemory* memory) {
-  std::vector<NearHint> out;
-  if (memory == nullptr) return out;
-  for (std::size_t k = 0; k < memory->objects.size(); ++k)
-    out.push_back({memory->objects[k], memory->nearest[k]});
   return out;
 }
 
@@ -212,13 +180,9 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   for (const NearestOfObject& of : nearest_of_objects(scene, distances, k)) {
     for (const std::size_t d : of.distances) wanted[d] = true;
   }
-  std::size_t kept = 0;
-  for (std::size_t d = 0; d < distances.size(); ++d) {
-    if (!wanted[d]) continue;
-    if (kept != d) distances[kept] = std::move(distances[d]);
-    ++kept;
-  }
-  distances.resize(kept);
+  std::erase_if(distances, [&, first = distances.data()](const Distance& d) {
+    return !wanted[static_cast<std::size_t>(&d - first)];
+  });
 }
 
 // Decides ties for the search: of many pairs that are equally near, it keeps one.
@@ -262,7 +226,7 @@ void add_closest_stage(std::uint64_t left, double ms, DistanceRecord& record) {
                           .unit = Unit::pairs});
 }
 
-void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
+void between_objects(const Scene& scene, const Progress& progress, std::span<const NearHint> hints,
                      DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
@@ -270,7 +234,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   const ProximityTrees trees = trees_of(scene, options.threads);
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
-    near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
+    near = trees.nearest_objects(options.k, options.within, hints, progress);
   } else {
     std::vector<ObjectPair> questions =
         std::isfinite(options.within) ? trees.objects_within(options.within, 4 * options.most_pairs)
@@ -278,7 +242,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
     std::erase_if(questions, [&](const ObjectPair& pair) {
       return std::ranges::binary_search(scene.ignored, pair);
     });
-    near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
+    near = trees.near_pairs(questions, options.within, hints_for(questions, hints), progress);
   }
   record.counts = trees.counts();
   std::uint64_t left = 0;
@@ -443,10 +407,26 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
 
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress, DistanceMemory* memory) {
-  check(options);
+  if (!(options.within >= 0))
+    throw Error("within", "is no distance", "give a number of world units, 0 or more");
+  if (options.pairs == DistancePairs::all && !std::isfinite(options.within))
+    throw Error("within", "is not finite, which pairs of all triangles need",
+                "give a finite number of world units");
+  if (options.pairs == DistancePairs::nearest && options.k == 0)
+    throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
-  require_few_questions(scene, options);
+  // Each pair of objects takes memory from the start, and more for its answer.
+  if (options.pairs == DistancePairs::objects && !std::isfinite(options.within)) {
+    const std::uint64_t questions = count_of_questions(scene);
+    if (questions > options.most_pairs) {
+      throw Error("scene",
+                  "has " + std::to_string(questions) + " pairs of objects, and at most " +
+                      std::to_string(options.most_pairs) + " are answered",
+                  "ask for the nearest objects of each ({pairs} nearest), or for the triangles "
+                  "within a distance ({pairs} all {within} D)");
+    }
+  }
   if (options.pairs == DistancePairs::nearest)
     require_nothing_ignored(scene, "the search for nearest objects");
   if (options.verify) require_nothing_ignored(scene, "the accounting of distances");
@@ -457,16 +437,13 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   if (options.pairs == DistancePairs::all) {
     between_triangles(scene, progress, out);
   } else {
-    between_objects(scene, progress, memory, out);
+    between_objects(scene, progress, memory ? *memory : std::span<const NearHint>(), out);
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
     DistanceMemory kept;  // so that an exception leaves `memory` as it was
     if (options.pairs != DistancePairs::all) {
-      for (const Distance& d : out.distances) {
-        kept.objects.push_back(d.objects);
-        kept.nearest.push_back(d.triangles);
-      }
+      for (const Distance& d : out.distances) kept.push_back({d.objects, d.triangles});
     }
     *memory = std::move(kept);
   }

@@ -78,12 +78,9 @@ struct Distance {
   WhichInside inside = WhichInside::unknown;
 };
 
-/// The nearest pairs of the previous frame, as bounds for this frame. They change the time, never
-/// an answer.
-struct DistanceMemory {
-  std::vector<ObjectPair> objects;    // sorted
-  std::vector<TrianglePair> nearest;  // the nearest pair of each of `objects`
-};
+/// The nearest pairs of the previous frame, sorted by objects, as bounds for this frame. They
+/// change the time, never an answer.
+using DistanceMemory = std::vector<NearHint>;
 
 struct DistanceRecord {
   DistanceOptions options;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/stage.h"
 #include "core/boxes/join.h"
@@ -66,7 +67,9 @@ std::span<const Method> all_methods();
 std::string to_string(Method method);
 /// The method with this name. Throws Error naming `option` for an unknown name.
 Method parse_method(const std::string& name, const std::string& option = "{method}");
-/// "far, cullide, ... or exact": the methods for which `can` is true; without `can`, all.
+/// The names of the methods for which `can` is true; without `can`, of all.
+std::vector<std::string> list_of_methods(const std::function<bool(const Traits&)>& can = {});
+/// The same in one text: "far, cullide, ... or exact".
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
 
 inline bool draws(Method method) { return traits(method).draws; }

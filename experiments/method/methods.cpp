@@ -3,7 +3,6 @@
 #include "experiments/method/method.h"
 
 #include <array>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -86,19 +85,6 @@ static_assert([] {
   return true;
 }());
 
-// Counts the triangles of the objects that are in a pair or are tested against themselves.
-std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
-  std::vector<std::uint8_t> in(scene.objects.size(), 0);
-  for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
-  std::uint64_t triangles = 0;
-  for (std::size_t o = 0; o < in.size(); ++o) {
-    const Object& object = scene.objects[o];
-    if (in[o] != 0 || (object.self && object.triangle_count > 1))
-      triangles += object.triangle_count;
-  }
-  return triangles;
-}
-
 Stage sweep_stage(const Scene& scene) {
   return {.kind = StageKind::sweep,
           .ran = true,
@@ -120,19 +106,22 @@ Method parse_method(const std::string& name, const std::string& option) {
     if (name == to_string(method)) return method;
   }
   const bool renamed = name == "far-pairs";
-  std::vector<std::string> known;
-  for (const Method method : all_methods()) known.push_back(to_string(method));
-  throw Error(
-      option, "'" + name + "' is no method",
-      (renamed ? "far-pairs is now called boxes; " : did_you_mean(likely_word(name, known))) +
-          "give " + method_names());
+  throw Error(option, "'" + name + "' is no method",
+              (renamed ? "far-pairs is now called boxes; "
+                       : did_you_mean(likely_word(name, list_of_methods()))) +
+                  "give " + method_names());
+}
+
+std::vector<std::string> list_of_methods(const std::function<bool(const Traits&)>& can) {
+  std::vector<std::string> names;
+  for (const Traits& method : kTable) {
+    if (!can || can(method)) names.emplace_back(method.name);
+  }
+  return names;
 }
 
 std::string method_names(const std::function<bool(const Traits&)>& can) {
-  std::vector<std::string> names;
-  for (const Method method : all_methods()) {
-    if (!can || can(traits(method))) names.push_back(to_string(method));
-  }
+  const std::vector<std::string> names = list_of_methods(can);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
     text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
@@ -197,7 +186,14 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   out.triangles = std::move(result.triangles);
   out.triangle_count = out.triangles.size();
   out.object_count = count_objects(scene, out.triangles);
-  const std::uint64_t swept = triangles_of(scene, result.object_pairs);
+  // The triangles of the objects that are in a pair or are tested against themselves.
+  std::vector<std::uint8_t> in(scene.objects.size(), 0);
+  for (const TrianglePair& pair : result.object_pairs) in[pair.a] = in[pair.b] = 1;
+  std::uint64_t swept = 0;
+  for (std::size_t o = 0; o < in.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (in[o] != 0 || (object.self && object.triangle_count > 1)) swept += object.triangle_count;
+  }
   out.by = SweptObjects{swept};
   Stage stage = sweep_stage(scene);
   stage.n = result.counts.objects;

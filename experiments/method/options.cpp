@@ -18,12 +18,6 @@ const std::vector<std::string> kOffsets = {
     // A new offset goes here.
 };
 
-std::string offset_names() {
-  std::string names;
-  for (const std::string& name : kOffsets) names += (names.empty() ? "" : ", ") + name;
-  return names;
-}
-
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
 // Checks only the form of the text; the device is opened when it is needed.
@@ -36,10 +30,6 @@ std::string braced(const std::string& name) { return "{" + name + "}"; }
 
 Error bad_value(const Option& option, const std::string& text) {
   return {braced(option.name), "'" + text + "' is no " + option.kind, option.remedy};
-}
-
-Error empty_value(const char* option, const char* remedy) {
-  return {option, "its value is empty", remedy};
 }
 
 // Reads a number that is `least` or more.
@@ -65,8 +55,8 @@ constexpr Choice<DepthMode> kDepths = {"fragment", DepthMode::fragment, "fixed",
 constexpr Choice<DepthFormat> kFormats = {"32f", DepthFormat::float32, "24", DepthFormat::fixed24};
 constexpr Choice<QueryMode> kQueries = {"flags", QueryMode::flags, "occlusion",
                                         QueryMode::occlusion};
-constexpr Choice<BroadPhase> kBroadPhases = {"objects", BroadPhase::objects, "triangles",
-                                             BroadPhase::triangles};
+constexpr Choice<BroadPhase> kPhases = {"objects", BroadPhase::objects, "triangles",
+                                        BroadPhase::triangles};
 constexpr Choice<ClearRule> kClearRules = {"any", ClearRule::any, "all", ClearRule::all};
 constexpr Choice<bool> kLevels = {"objects", true, "triangles", false};
 
@@ -102,13 +92,14 @@ bool take_radius(const std::string& text, RunOptions& options) {
 }
 
 bool take_views(const std::string& text, RunOptions& options) {
-  if (text.empty()) throw empty_value("{views}", "give directions, as in x,y,z");
+  if (text.empty()) throw Error("{views}", "its value is empty", "give directions, as in x,y,z");
   options.views = text;
   return true;
 }
 
 bool take_device(const std::string& text, RunOptions& options) {
-  if (text.empty()) throw empty_value("{device}", "give native, software, hardware or a number");
+  if (text.empty())
+    throw Error("{device}", "its value is empty", "give native, software, hardware or a number");
   options.device = text;
   return is_device(text);
 }
@@ -126,12 +117,6 @@ std::optional<std::string> only_if(bool unusual, std::string value) {
 OptionValue value_if(bool has, OptionValue value) { return has ? value : OptionValue(); }
 OptionValue text_if(bool has, const char* text) { return value_if(has, std::string(text)); }
 
-std::vector<std::string> all_method_names() {
-  std::vector<std::string> names;
-  for (const Method method : all_methods()) names.push_back(to_string(method));
-  return names;
-}
-
 using Given = const std::string&;
 using Run = const RunOptions&;
 
@@ -142,7 +127,7 @@ const Option kOptions[] = {
              "help methods); default\nboxes",
      .serves = any,
      .take = [](Given text, RunOptions& o) { return o.method = parse_method(text), true; },
-     .words = all_method_names()},
+     .words = list_of_methods()},
     {.name = "resolution",
      .type = "N",
      .help =
@@ -219,15 +204,13 @@ const Option kOptions[] = {
              "object, as published; triangles: if it meets the box of\n"
              "a triangle of another object; default objects",
      .serves = drawing_levels,
-     .take = take_choice<kBroadPhases, &RunOptions::broad_phase>,
+     .take = take_choice<kPhases, &RunOptions::broad_phase>,
      .kind = "choice",
      .remedy = "give objects or triangles",
      .unusual = [](Run o) { return only_if(o.broad_phase == BroadPhase::triangles, "triangles"); },
      .copy = copy_value<&RunOptions::broad_phase>,
      .value =
-         [](Run o) {
-           return text_if(drawing_levels(traits(o.method)), kBroadPhases.word(o.broad_phase));
-         }},
+         [](Run o) { return text_if(has_broad_phase(o.method), kPhases.word(o.broad_phase)); }},
     {.name = "clusters",
      .type = "LIST|none",
      .help = "sizes of clusters of triangles that are asked before\n"
@@ -288,9 +271,7 @@ const Option kOptions[] = {
          },
      .copy = copy_value<&RunOptions::objects_alone>,
      .value =
-         [](Run o) {
-           return text_if(drawing_levels(traits(o.method)), kLevels.word(o.objects_alone));
-         },
+         [](Run o) { return text_if(has_broad_phase(o.method), kLevels.word(o.objects_alone)); },
      .of_drawing = true},
     {.name = "conservative",
      .type = "",
@@ -372,9 +353,6 @@ const Option kOptions[] = {
     // A new option goes here.
 };
 
-constexpr int kUsualResolution = 512;
-constexpr const char* kUsualViews = "x,y,z";
-
 // Refuses an option that the method does not have, so that no request of the user is ignored.
 void refuse_idle(const RunOptions& options, const GivenOptions& given) {
   const Traits& method = traits(options.method);
@@ -383,7 +361,7 @@ void refuse_idle(const RunOptions& options, const GivenOptions& given) {
     const bool unusual = option.unusual && option.unusual(options);
     if (!unusual && !given.contains(option.name)) continue;
     const std::string why = option.why_not ? option.why_not(method) : "";
-    const std::string name = "{" + std::string(option.name) + "}";
+    const std::string name = braced(option.name);
     throw Error(name,
                 why.empty() ? "has no meaning for {method} " + to_string(options.method)
                             : to_string(options.method) + " " + why,
@@ -457,9 +435,10 @@ void validate(const RunOptions& options, const GivenOptions& given) {
   require("rounds", options.rounds >= 0, std::to_string(options.rounds));
   require("clearance", is_distance(options.clearance), shortest(options.clearance));
   require("device", is_device(options.device), options.device);
-  if (std::find(kOffsets.begin(), kOffsets.end(), options.offset) == kOffsets.end()) {
-    throw Error("{offset}", "'" + options.offset + "' is no offset",
-                "give one of " + offset_names());
+  if (std::ranges::find(kOffsets, options.offset) == kOffsets.end()) {
+    std::string names;
+    for (const std::string& name : kOffsets) names += (names.empty() ? "" : ", ") + name;
+    throw Error("{offset}", "'" + options.offset + "' is no offset", "give one of " + names);
   }
   if (!options.views.empty()) parse_views(options.views);
   if (!options.neighbours && options.verify) {
@@ -489,11 +468,11 @@ void validate(const RunOptions& options, const GivenOptions& given) {
 }
 
 int resolution_of(const RunOptions& options) {
-  return options.resolution > 0 ? options.resolution : kUsualResolution;
+  return options.resolution > 0 ? options.resolution : 512;
 }
 
 std::string views_of(const RunOptions& options) {
-  return options.views.empty() ? kUsualViews : options.views;
+  return options.views.empty() ? "x,y,z" : options.views;
 }
 
 DepthMode depth_of(const RunOptions& options) {

@@ -18,13 +18,6 @@
 namespace farcull {
 namespace {
 
-// Sets the triangles that are in a candidate pair, and the number of their objects.
-void count_kept(const Scene& scene, Candidates& found) {
-  found.triangles = members_of(found.pairs, scene.triangles.size());
-  found.triangle_count = found.triangles.size();
-  found.object_count = count_objects(scene, found.triangles);
-}
-
 // Decides candidates as they are found, in the threads that find them. marks: marks their
 // triangles.
 class StreamingDecider {
@@ -334,7 +327,11 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   }
   // If the method returns only pairs, their triangles are counted here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
-  if (only_pairs && !use.answer_only) count_kept(scene, found);
+  if (only_pairs && !use.answer_only) {
+    found.triangles = members_of(found.pairs, scene.triangles.size());
+    found.triangle_count = found.triangles.size();
+    found.object_count = count_objects(scene, found.triangles);
+  }
   decide_stage(scene, session, progress, question, !use.decided, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
