@@ -273,9 +273,10 @@ std::size_t blocks_of_tree(std::size_t leaves) {
 }
 
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order) {
-  std::vector<Placed> items(boxes.size());
-  for (std::size_t k = 0; k < items.size(); ++k)
-    items[k] = placed(boxes[k], static_cast<std::uint32_t>(k));
+  std::vector<Placed> items;
+  items.reserve(boxes.size());
+  for (const Box& box : boxes)
+    items.push_back(placed(box, static_cast<std::uint32_t>(items.size())));
   sort_in_place(items, 0);
   for (std::size_t k = 0; k < items.size(); ++k) order[k] = items[k].box;
 }

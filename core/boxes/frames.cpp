@@ -66,16 +66,6 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
   return out;
 }
 
-// The decision of a frame in which nothing moved: everything is as before.
-BlockDecision unmoved_decision(const FrameMemory& memory) {
-  BlockDecision out{.blocks = {}, .pairs = memory.object_pairs, .self = memory.self};
-  out.blocks.kept = memory.pairs;
-  out.blocks.overlaps = memory.overlaps;
-  out.blocks.meetings = memory.meetings;
-  out.blocks.triangles = memory.triangles;
-  return out;
-}
-
 // The decision for a frame in which some blocks moved. Recomputes the boxes, trees and pairs of
 // these blocks. Empty if many more pairs of blocks overlap than when the blocks were made, or if
 // decide_by_meetings() decides.
@@ -126,7 +116,11 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
 }  // namespace
 
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory) {
-  if (!memory.moved.any()) return unmoved_decision(memory);
+  if (!memory.moved.any()) {  // everything is as before
+    BlockDecision out = memory.counts;
+    out.blocks.kept = memory.pairs;
+    return out;
+  }
   if (memory.blocks) {
     if (auto decision = decision_of_moved(scene, threads, memory)) return *std::move(decision);
   }

@@ -95,15 +95,6 @@ constexpr std::size_t kLeast = 4096;
 // About this many pairs are found at a time; they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
-// Makes room for `more` pairs, and for later ones as if the remaining items had as many pairs each.
-// Reserves 2 to 8 times what is needed, because each growth copies the list.
-void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
-  const std::size_t needed = pairs.size() + more;
-  if (needed <= pairs.capacity()) return;
-  const double factor = std::clamp(1 / join.share(), 2.0, 8.0);
-  pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
-}
-
 // True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
 // cost a few more nodes, but overlaps inside an owner are never examined.
 bool are_few(std::span<const std::uint32_t> owners) {
@@ -266,7 +257,12 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   std::vector<TrianglePair> pairs, some;
   while (!at_end() && pairs.size() <= most) {
     next(std::clamp<std::size_t>(most, 1, kPortion), some);
-    make_room(*this, some.size(), pairs);
+    // Makes room for later pairs too, as if the remaining items had as many each. Reserves 2 to 8
+    // times what is needed, because each growth copies the list.
+    const std::size_t needed = pairs.size() + some.size();
+    const double factor = std::clamp(1 / share(), 2.0, 8.0);
+    if (needed > pairs.capacity())
+      pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
     pairs.insert(pairs.end(), some.begin(), some.end());
   }
   if (pairs.size() > most) pairs.resize(most + 1);
@@ -376,22 +372,9 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 
 namespace {
 
-constexpr std::uint32_t kNoLanes = 0xffffffff;
-
-// For each block, the index of its lanes, or kNoLanes.
-std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
-  std::vector<std::uint32_t> out(blocks.ranges.size(), kNoLanes);
-  for (std::uint32_t o = 0; o < blocks.objects.size(); ++o) {
-    if (!blocks.is_gathered(o)) continue;
-    const auto from = out.begin() + blocks.first[o];
-    std::iota(from, from + blocks.count(o), blocks.gathered[o].first);
-  }
-  return out;
-}
-
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;      // index for each block, or kNoLanes
+  std::vector<std::uint32_t> place;      // index for each block, or TriangleBlocks::kNoLanes
   UninitializedVector<BlockLanes> more;  // indexed after those in TriangleBlocks
 };
 
@@ -416,10 +399,10 @@ void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
 Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPairs& pairs,
                double clearance, unsigned threads) {
   Lanes out;
-  out.place = places_of(blocks);
+  out.place = blocks.lane_places();
   const auto given = static_cast<std::uint32_t>(blocks.lanes.size());
   std::vector<std::uint32_t> missing = blocks_in(pairs, blocks.ranges.size());
-  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != kNoLanes; });
+  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != blocks.kNoLanes; });
   std::uint32_t next = given;
   for (const std::uint32_t block : missing) out.place[block] = next++;
   out.more.resize(missing.size());

@@ -135,14 +135,6 @@ class Walk {
   UninitializedVector<BlockLanes> lanes_;  // per such node: its children
 };
 
-// The middle of the places where objects meet: floats relative to it are finest there.
-Vec3 middle_of_meetings(const TriangleBlocks& blocks, std::span<const ObjectOverlap> meetings) {
-  Box all = Box::empty();
-  for (const auto& [a, b] : meetings) all.add(intersection(blocks.objects[a], blocks.objects[b]));
-  if (all.is_empty()) return Vec3::Zero();
-  return 0.5 * all.lo + 0.5 * all.hi;
-}
-
 }  // namespace
 
 Box moved(const RigidMotion& motion, const Box& box) {
@@ -222,7 +214,12 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   }
   const ObjectOverlaps meetings = find_meetings(scene, blocks, ignored);
   if (meetings.crowded) return std::nullopt;
-  blocks.origin = middle_of_meetings(blocks, meetings.all);
+  // The middle of the places where objects meet: floats relative to it are finest there.
+  Box all = Box::empty();
+  for (const auto& [a, b] : meetings.all)
+    all.add(intersection(blocks.objects[a], blocks.objects[b]));
+  blocks.origin = Vec3::Zero();
+  if (!all.is_empty()) blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   auto pairs = Walk(rigid, motions, half, threads).pairs(meetings.all);
   if (!pairs) return std::nullopt;
   BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};

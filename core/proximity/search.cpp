@@ -300,6 +300,20 @@ class Searcher {
     return bits;
   }
 
+  // The least and the largest coordinate along d of each triangle of a leaf, from lane `from` on.
+  struct Ends {
+    Number least, most;
+  };
+  HWY_INLINE Ends ends_along(const Vec3& d, const BlockCorners& leaf, std::size_t from) const {
+    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
+    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
+    const auto place = [&](std::size_t corner) {
+      return dot(LaneTriangle::load(leaf.corner, corner, from) - origin, direction);
+    };
+    const Number p = place(0), q = place(1), r = place(2);
+    return {hn::Min(hn::Min(p, q), r), hn::Max(hn::Max(p, q), r)};
+  }
+
   // Bits of the triangles of a leaf that along d are no farther from a triangle than the bound.
   HWY_INLINE std::uint32_t near_along(const Vec3& d, const std::array<Vec3, 3>& corners,
                                       const BlockCorners& leaf) const {
@@ -311,16 +325,10 @@ class Searcher {
     const double at_p = at(0), at_q = at(1), at_r = at(2);
     const Number least = number(std::min({at_p, at_q, at_r})),
                  most = number(std::max({at_p, at_q, at_r}));
-    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
-    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
     std::uint32_t out = 0;
     for (std::size_t from = 0; from < kWide; from += kLanes) {
-      const auto place = [&](std::size_t k) {
-        return dot(LaneTriangle::load(leaf.corner, k, from) - origin, direction);
-      };
-      const Number x = place(0), y = place(1), z = place(2);
-      const Number gap = hn::Max(hn::Sub(hn::Min(hn::Min(x, y), z), most),
-                                 hn::Sub(least, hn::Max(hn::Max(x, y), z)));
+      const Ends own = ends_along(d, leaf, from);
+      const Number gap = hn::Max(hn::Sub(own.least, most), hn::Sub(least, own.most));
       out |= boxes::bits_of(Numbers(), hn::Le(gap, number(limit))) << from;
     }
     return out;
@@ -340,17 +348,9 @@ class Searcher {
 
   // Sets the leaf's extremes along the direction: the largest coordinates (`most`) or the smallest.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
-    const Numbers n;
-    const Vec3& d = search_.direction;
-    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
-    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
     for (std::size_t from = 0; from < kWide; from += kLanes) {
-      const auto place = [&](std::size_t corner) {
-        return dot(LaneTriangle::load(leaf.corner, corner, from) - origin, direction);
-      };
-      const Number p = place(0), q = place(1), r = place(2);
-      hn::Store(most ? hn::Max(hn::Max(p, q), r) : hn::Min(hn::Min(p, q), r), n,
-                &leaf.extreme[from]);
+      const Ends ends = ends_along(search_.direction, leaf, from);
+      hn::Store(most ? ends.most : ends.least, Numbers(), &leaf.extreme[from]);
     }
     const auto end = leaf.extreme.begin() + leaf.count;
     leaf.most_extreme = most ? *std::max_element(leaf.extreme.begin(), end)

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -12,32 +11,6 @@
 #include "core/base/error.h"
 
 namespace farcull {
-
-Box Box::empty() {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return {Vec3::Constant(kInf), Vec3::Constant(-kInf)};
-}
-
-void Box::add(const Vec3& p) {
-  lo = lo.cwiseMin(p);
-  hi = hi.cwiseMax(p);
-}
-
-void Box::add(const Box& other) {
-  lo = lo.cwiseMin(other.lo);
-  hi = hi.cwiseMax(other.hi);
-}
-
-bool overlap(const Box& a, const Box& b) {
-  return !intersection(a, b).is_empty();  // so a box that is empty along one axis meets nothing
-}
-
-bool lies_within(const Box& inner, const Box& outer) {
-  return (inner.lo.array() >= outer.lo.array()).all() &&
-         (inner.hi.array() <= outer.hi.array()).all();
-}
-
-Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }
 
 void validate(const Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
@@ -146,10 +119,7 @@ std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> t
   return objects;
 }
 
-bool has_self(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const Object& object) { return object.self; });
-}
+bool has_self(const Scene& scene) { return std::ranges::any_of(scene.objects, &Object::self); }
 
 std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs, std::span<const ObjectPair> more) {
   pairs.insert(pairs.end(), more.begin(), more.end());

@@ -44,9 +44,12 @@ class BoxSweep {
   struct End {
     double value;
     std::uint32_t box_and_side;  // 2 box + 1 for the upper end
+    // At equal values lower ends come first, since touching boxes overlap.
+    bool operator<(const End& f) const {
+      return value < f.value || (value == f.value && (box_and_side & 1) < (f.box_and_side & 1));
+    }
   };
 
-  static bool before(const End& e, const End& f);
   void start(std::span<const Box> boxes);
   bool sort_axis(int axis, std::span<const Box> boxes);
 

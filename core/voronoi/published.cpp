@@ -111,7 +111,7 @@ class Published {
  public:
   using Found = std::vector<ObjectPair>;
   Published(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid)
-      : triangles_(triangles), longest_(grid.longest()), error_(voronoi_error(grid.longest())) {}
+      : triangles_(triangles), longest_(grid.longest()) {}
 
   Found nothing() const { return {}; }
 
@@ -242,7 +242,7 @@ class Published {
 
   const std::vector<GridTriangle>& triangles_;
   int longest_;
-  float error_;
+  float error_ = voronoi_error(longest_);
   std::vector<ObjectPair> pairs_;  // of the levels above
 };
 

@@ -53,22 +53,20 @@ bool has_word(const std::string& list, const std::string& word) {
 // in this process may have opened the display when it had another value.
 
 // Reads LP_NUM_THREADS as llvmpipe does. Without it: a thread per core, but none on a single core.
-int read_variable() {
-  constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
-  const long cores = static_cast<long>(std::thread::hardware_concurrency());
-  long threads = cores > 1 ? cores : 0;
-  if (const char* const text = std::getenv("LP_NUM_THREADS")) {
-    char* end = nullptr;
-    const long number = std::strtol(text, &end, 0);
-    if (end != text) threads = number;
-  }
-  return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
-}
-
 // Must be called before the first display is opened, which is when llvmpipe reads the variable.
 int asked_threads() {
-  static const int threads = read_variable();
-  return threads;
+  static const int asked = [] {
+    constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
+    const long cores = static_cast<long>(std::thread::hardware_concurrency());
+    long threads = cores > 1 ? cores : 0;
+    if (const char* const text = std::getenv("LP_NUM_THREADS")) {
+      char* end = nullptr;
+      const long number = std::strtol(text, &end, 0);
+      if (end != text) threads = number;
+    }
+    return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
+  }();
+  return asked;
 }
 
 int running_threads() {
@@ -84,17 +82,12 @@ int running_threads() {
   return threads;
 }
 
-// Address space that Mesa's software device takes: its libraries with LLVM, and a stack and a heap
-// for each of up to 16 threads. With less it crashes, or seems not to be installed.
-std::size_t driver_bytes() {
-  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
-  return (std::size_t{256} + std::size_t{64} * threads) << 20;
-}
-
-// Throws Error if less than driver_bytes() of address space is left, as under ulimit -v. To find
-// out, reserves that much and releases it untouched.
+// Throws Error if less address space is left, as under ulimit -v, than Mesa's software device
+// takes: its libraries with LLVM, and a stack and a heap for each of up to 16 threads. With less it
+// crashes, or seems not to be installed. To find out, reserves that much and releases it untouched.
 void require_memory() {
-  const std::size_t bytes = driver_bytes();
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+  const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
   void* const reserved = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
                                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (reserved == MAP_FAILED) {

@@ -39,6 +39,35 @@ void bind_texture(GLuint name) {
   require(asked(GL_TEXTURE_BINDING_2D) == static_cast<GLint>(name), "the texture");
 }
 
+// The sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
+std::uint32_t sum_of(std::span<const std::byte> data) {
+  std::uint32_t sum = 0;
+  const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
+  for (std::uint32_t w = 0; w < count; ++w) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, data.data() + w * sizeof word, sizeof word);
+    sum += gl_mixed(word, w);
+  }
+  return sum;
+}
+
+// Waits until the device has finished all commands.
+void wait(const std::string& stage) {
+  constexpr int kLongest = 600;  // s
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum answer = GL_TIMEOUT_EXPIRED;
+  for (int second = 0; second < kLongest && answer == GL_TIMEOUT_EXPIRED; ++second)
+    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  glDeleteSync(fence);
+  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
+  check_gl(stage);
+  throw Error("GL " + stage,
+              answer == GL_TIMEOUT_EXPIRED
+                  ? "the device did not finish within " + std::to_string(kLongest) + " s"
+                  : "the device does not say whether it has finished",
+              "choose a smaller resolution, or another {device}");
+}
+
 // The capability that turns conservative rasterization on. Throws Error if the device has none.
 GLenum conservative_switch() {
   if (epoxy_has_gl_extension("GL_NV_conservative_raster")) return GL_CONSERVATIVE_RASTERIZATION_NV;
@@ -104,7 +133,9 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
   echo.add({step + 1, n.count, n.echo, n.serial, n.flags, n.bits, tag, store_.tag()});
   echoes_.push_back(echo.sum);
   finished_ += n.count;
-  gl_dispatch(groups, context_.info().max_compute_groups);
+  const std::uint32_t row = std::min(groups, std::uint32_t(context_.info().max_compute_groups));
+  glDispatchCompute(row, (groups + row - 1) / row, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   ++dispatches_;
 }
 
@@ -113,7 +144,7 @@ void CanvasReport::expect(const GlStore& store, std::span<const std::byte> data)
     const std::span<const std::byte> part = data.subspan(at, std::min(piece_, data.size() - at));
     std::uint32_t tag = store.tag();
     if (at > 0) std::memcpy(&tag, data.data() + at - kTagBytes, sizeof tag);
-    sum_ += gl_sum(part);
+    sum_ += sum_of(part);
     const auto count = static_cast<std::uint32_t>(part.size() / kVec4);
     const std::uint32_t per_group = kGroup * kBatches[0];
     dispatch(0, store, at, kTagBytes + part.size(), tag,
@@ -137,7 +168,7 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 }
 
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
-  gl_wait(stage);
+  wait(stage);
   const std::size_t bits = kHead + echoes_.size();
   // An echo can equal this initial value by chance, but the number of finished work items cannot.
   // So if the read fails silently, that number is wrong, which is noticed below.
@@ -212,6 +243,9 @@ CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
       with_flags ? program("ask", {ask_define(), "FAR_FLAGS"}) : program("ask", {ask_define()});
   report.emplace(context, block, alignment);
   vertex_array = gl_make<GlVertexArray>(glGenVertexArrays);
+  GLint bits = 0;
+  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+  ticks = bits > 0;
   check_gl("canvas");
 }
 
@@ -331,11 +365,6 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Conservative rasterization is off for the canvas's own elements, which are exact without it.
-void CanvasState::set_conservative(bool on) const {
-  if (conservative != 0) set_enabled(conservative, on, "conservative rasterization");
-}
-
 // Sends the lists of a pass; the device sums them.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
@@ -376,8 +405,10 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());
-  if (before == nullptr || (before->chunk == kExtras) != (batch.chunk == kExtras))
-    set_conservative(batch.chunk != kExtras);
+  // Conservative rasterization is off for the canvas's own elements, which are exact without it.
+  const bool own = batch.chunk == kExtras;
+  if (conservative != 0 && (before == nullptr || (before->chunk == kExtras) != own))
+    set_enabled(conservative, !own, "conservative rasterization");
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, kDraws, draws.name(),
                     static_cast<GLintptr>(batch.offset * sizeof(GpuDraw)),
                     static_cast<GLsizeiptr>((batch.count + 1) * sizeof(GpuDraw)));
@@ -406,6 +437,26 @@ void CanvasState::draw(std::size_t first, std::size_t count) {
                  static_cast<GLsizei>(n) * vertices());
     ++work.draws;
   }
+}
+
+// Each stamp has a new name. If the stamp is lost, the name has no object, so no old time is read.
+void CanvasState::stamp(std::size_t place) {
+  if (!ticks) return;
+  stamps[place] = gl_make<GlQuery>(glGenQueries);
+  glQueryCounter(stamps[place], GL_TIMESTAMP);
+}
+
+double CanvasState::stamped_ms() const {
+  std::array<GLuint64, 2> ns{};
+  for (std::size_t k = 0; k < ns.size(); ++k) {
+    if (stamps[k] == 0) return -1;
+    GLuint ready = GL_FALSE;
+    glGetQueryObjectuiv(stamps[k], GL_QUERY_RESULT_AVAILABLE, &ready);
+    if (ready == GL_TRUE) glGetQueryObjectui64v(stamps[k], GL_QUERY_RESULT, &ns[k]);
+    check_gl("clock");
+    if (ns[k] == 0) return -1;
+  }
+  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
 }
 
 }  // namespace farcull

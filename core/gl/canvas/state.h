@@ -144,15 +144,15 @@ struct CanvasState {
   CanvasElements current;               // of the last begin()
   std::vector<CanvasElements> earlier;  // of earlier calls, for use again
   std::size_t per_chunk = 0;            // elements
-  std::size_t elements = 0;
-  std::size_t block = 0;        // bytes of data in a storage block
-  std::size_t alignment = 256;  // of a storage buffer range, in bytes
-  GLenum conservative = 0;      // GL capability for conservative rasterization; 0: not wanted
+  std::size_t block = 0;                // bytes of data in a storage block
+  std::size_t alignment = 256;          // of a storage buffer range, in bytes
+  GLenum conservative = 0;  // GL capability for conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
   Window window;
-  GlClock clock{2};  // when a pass or an upload begins and ends
+  bool ticks = false;             // the device has a clock (GL_TIMESTAMP)
+  std::array<GlQuery, 2> stamps;  // when a pass or an upload began and ended
   CanvasWork work;
 
   CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
@@ -181,12 +181,15 @@ struct CanvasState {
   void clear_depth(float value) const;
   void start(float clear) const;
   void set_verb(Verb verb, bool touching);
-  void set_conservative(bool on) const;
   void upload(const CanvasPass& laid, bool with_flags);
   void bind(const CanvasBatch& batch, const CanvasBatch* before) const;
   std::uint32_t echo(const CanvasPass& laid, const CanvasBatch& batch, const CanvasProgram& program,
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
+  void stamp(std::size_t place);
+  /// Milliseconds on the device between the two stamps; negative if unknown. The device must have
+  /// finished all commands. Throws Error if GL fails.
+  double stamped_ms() const;
 
   // begin() uploads the elements and prepares the targets. All four functions throw Error if the
   // device refuses or a command was lost; the contents of the device are then unknown.
