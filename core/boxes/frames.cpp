@@ -9,16 +9,6 @@
 namespace farcull {
 namespace {
 
-// The block of each triangle.
-std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std::size_t triangles) {
-  std::vector<std::uint32_t> out(triangles);
-  for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
-    const TriangleBlock& range = blocks.ranges[k];
-    for (std::uint32_t i = 0; i < range.count; ++i) out[blocks.triangle(range.first + i)] = k;
-  }
-  return out;
-}
-
 // Overlapping pairs of blocks with at least one moved block, each pair once. moved: per block,
 // whether it moved. moved_blocks: the blocks that moved, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
@@ -96,9 +86,8 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
   out.blocks.meetings = meetings.all.size();
   out.blocks.pairs =
       pairs_of_moved(*memory.trees, meetings.all, blocks, moved, moved_blocks, threads);
-  const auto has_moved = [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; };
   const auto renew = [&](std::vector<BlockPair>& all, const std::vector<BlockPair>& anew) {
-    std::erase_if(all, has_moved);
+    std::erase_if(all, [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; });
     all.insert(all.end(), anew.begin(), anew.end());
   };
   renew(memory.overlapping.between, out.blocks.pairs.between);
@@ -135,7 +124,11 @@ BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemor
   }
   if (decision->tree == Reason::none && !decision->blocks.oriented) {
     memory.trees.emplace(blocks, blocks.objects);
-    memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
+    memory.block_of.resize(scene.triangles.size());
+    for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
+      const auto& [first, count] = blocks.ranges[k];
+      for (std::uint32_t i = 0; i < count; ++i) memory.block_of[blocks.triangle(first + i)] = k;
+    }
     memory.overlapping = decision->blocks.pairs;
     memory.normals = decision->blocks.normals;
     memory.usual = memory.overlapping.size();

@@ -1,9 +1,6 @@
 // Finds pairs with a tree of boxes, item by item, several items in parallel. The pairs of an item a
 // are those with b > a, so the result is sorted by a. If there are few owners, leaves are grouped
 // by owner, in order, and an item is only compared with leaves of later owners.
-//
-// Trees of blocks are searched block by block. Triangles whose boxes touch in floats are compared
-// again in doubles.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -13,7 +10,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -324,8 +320,6 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   }
 }
 
-// ---- blocks ----
-
 HWY_EXPORT(pair_blocks_here);
 
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
@@ -347,15 +341,33 @@ BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> region
 }
 
 void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed) {
-  std::vector<std::uint32_t> leaves;
+  std::vector<std::uint32_t> children;  // of one height whose boxes have changed; first leaves
   for (std::size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
     const auto behind = std::ranges::upper_bound(first_, changed[begin]);
     const auto object = static_cast<std::uint32_t>(behind - first_.begin() - 1);
-    leaves.clear();
-    for (; end < changed.size() && changed[end] < *behind; ++end)
-      leaves.push_back(changed[end] - first_[object]);
-    update_tree<float>([&](std::uint32_t k) { return blocks.bound(object, k); }, leaves, nodes_,
-                       trees_[object]);
+    BoxTree<float>& tree = trees_[object];
+    children.clear();
+    for (; end < changed.size() && changed[end] < *behind; ++end) {
+      const std::uint32_t leaf = changed[end] - first_[object];
+      nodes_[tree.first[0] + leaf / kWide].set(leaf % kWide, blocks.bound(object, leaf));
+      children.push_back(leaf);
+    }
+    for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
+      std::size_t found = 0;  // nodes above; `children` begins with their numbers
+      for (const std::uint32_t child : children) {
+        const std::uint32_t node = child / kWide;
+        if (found > 0 && children[found - 1] == node) continue;
+        children[found++] = node;
+        FloatBox all = kNowhere;
+        for (std::size_t k = 0; k < kWide; ++k) all.add(nodes_[tree.first[height] + node].get(k));
+        if (height + 1 < static_cast<std::size_t>(tree.levels)) {
+          nodes_[tree.first[height + 1] + node / kWide].set(node % kWide, all);
+        } else {
+          tree.box = all;
+        }
+      }
+      children.resize(found);
+    }
   }
 }
 

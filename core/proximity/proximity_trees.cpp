@@ -1,10 +1,8 @@
 // ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
 // Searches run in parallel; a long one is divided. For the nearest objects of an object, it is
 // compared with the others in the order of the gaps of their parts, until a gap is above the k-th
-// least upper bound so far. If many parts overlap, each small object is first compared with all
-// triangles at once, and then only with the few objects that this leaves. For all pairs within a
-// distance, each object is compared with those that follow it. The bound of these searches is the
-// given limit and does not shrink. They pause often, so that the pairs of all can be counted.
+// least upper bound so far. For all pairs within a distance, each object is compared with those
+// that follow it.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -288,8 +286,7 @@ void for_later_within(const SceneTrees& trees, std::uint32_t object, double limi
 }
 
 bool has(const Object& object, std::uint32_t triangle) {
-  return triangle >= object.first_triangle &&
-         triangle - object.first_triangle < object.triangle_count;
+  return triangle - object.first_triangle < object.triangle_count;
 }
 // Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
 bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {

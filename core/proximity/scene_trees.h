@@ -134,7 +134,6 @@ class SceneTrees {
   std::uint32_t object(std::uint32_t leaf) const { return object_of_leaf_[leaf]; }
 
  private:
-  void choose_scale();
   void make_trees(unsigned threads);
   void find_least(std::uint32_t object);
   void add_parts(std::uint32_t object);

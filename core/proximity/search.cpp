@@ -393,7 +393,13 @@ class Searcher {
     if (batch.count == 0) return;
     BatchBounds bounds;
     bound_batch(batch, bounds);
-    find_common_corners(bounds);
+    // Triangles of two objects that have a corner in common meet. The bounds may not show that,
+    // since no edge need pierce a face, as in equal objects and in fans.
+    for (std::size_t k = 0; k < batch.count && !self_; ++k) {
+      const auto& [a, b] = batch.pairs[k];
+      if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
+        bounds.upper[k] = 0;
+    }
     search_.counts.triangle_pairs += batch.count;
     const double before = search_.upper;
     std::size_t best = kWide;
@@ -423,17 +429,6 @@ class Searcher {
     }
     if (!probing_) keep(bounds);
     batch.count = 0;
-  }
-  // Triangles of two objects that have a corner in common meet. The bounds may not show that, since
-  // no edge need pierce a face, as in equal objects and in fans.
-  void find_common_corners(BatchBounds& bounds) const {
-    if (self_) return;
-    const PairBatch& batch = memory_.batch;
-    for (std::size_t k = 0; k < batch.count; ++k) {
-      const auto& [a, b] = batch.pairs[k];
-      if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
-        bounds.upper[k] = 0;
-    }
   }
   void keep(const BatchBounds& bounds) {
     const double bound = search_.bound();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/base/bytes.h"
@@ -53,12 +54,9 @@ void validate(const Scene& scene, const std::string& where) {
 }
 
 std::vector<Box> triangle_boxes(const Scene& scene) {
-  std::vector<Box> boxes(scene.triangles.size());
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    const auto& [a, b, c] = scene.triangles[t];
-    boxes[t] = {scene.vertices[a], scene.vertices[a]};
-    boxes[t].add(scene.vertices[b]);
-    boxes[t].add(scene.vertices[c]);
+  std::vector<Box> boxes(scene.triangles.size(), Box::empty());
+  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) boxes[t].add(p);
   }
   return boxes;
 }
@@ -168,8 +166,6 @@ std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ign
   return is_ignored.any() ? std::erase_if(pairs, is_ignored) : 0;
 }
 
-// ---- corners that moved ----
-
 void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   ++frame_;
   triangles_.clear();
@@ -199,15 +195,14 @@ FrameChange MovedCorners::compare(const Scene& scene) {
   // If an allocation below throws, the copy is partial and is lost.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;
-  std::vector<Part> objects;
-  objects.reserve(scene.objects.size());
-  for (const Object& o : scene.objects)
-    objects.push_back({o.first_triangle, o.triangle_count, o.self});
+  const auto but_its_name = [](const Object& o) {
+    return std::tuple(o.first_triangle, o.triangle_count, o.self);
+  };
   const std::size_t n = scene.vertices.size();
-  out.same = copy && copy->vertices.size() == n && copy->objects == objects &&
-             copy->triangles == scene.triangles;
+  out.same = copy && copy->vertices.size() == n && copy->triangles == scene.triangles &&
+             std::ranges::equal(copy->objects, scene.objects, {}, but_its_name, but_its_name);
   if (!out.same) {
-    last_ = {std::move(objects), scene.triangles, scene.vertices};
+    last_ = {scene.objects, scene.triangles, scene.vertices};
     return out;
   }
   // Compares bits: -0.0 and 0.0 count as different, which costs a comparison at most.
@@ -266,8 +261,6 @@ bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pai
   }
   return 2 * unmoved >= count;
 }
-
-// ---- matrices ----
 
 bool is_invertible(std::array<double, 9> r) {
   for (int row = 0; row < 9; row += 3) {

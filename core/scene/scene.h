@@ -180,8 +180,6 @@ class IgnoredObjects {
   std::vector<std::uint32_t> others_;
 };
 
-// ---- which corners moved from one frame to the next ----
-
 /// What changed from the previous frame of a scene to this one.
 struct FrameChange {
   bool same = false;  // number of vertices, triangles and objects are those of the frame before
@@ -214,13 +212,8 @@ class MovedCorners {
   static constexpr int kMostWaits = 16;  // frames in a row that may wait
 
  private:
-  struct Part {
-    std::uint32_t first, count;
-    bool self;
-    bool operator==(const Part&) const = default;
-  };
   struct Copy {
-    std::vector<Part> objects;
+    std::vector<Object> objects;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> vertices;
   };

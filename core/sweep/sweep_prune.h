@@ -23,8 +23,7 @@
 
 namespace farcull {
 
-/// Finds the overlapping pairs of a set of moving boxes, from frame to frame. The ends of all boxes
-/// along each axis stay in sorted lists.
+/// Finds the overlapping pairs of a set of moving boxes, from frame to frame.
 class BoxSweep {
  public:
   /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,

@@ -23,7 +23,6 @@ namespace farcull {
 struct EglContext {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-  bool reset_detection = false;
 
   ~EglContext() {
     // The display stays initialized: EGL has one per device, and another context of this process
@@ -148,7 +147,7 @@ std::string with_cause(const char* reason) {
 }
 
 // The device of the current context.
-GlInfo read_info(const std::string& kind, bool reset_detection) {
+GlInfo read_info(const std::string& kind) {
   GlInfo info;
   info.kind = kind;
   info.vendor = gl_text(GL_VENDOR);
@@ -164,7 +163,10 @@ GlInfo read_info(const std::string& kind, bool reset_detection) {
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
   info.max_viewport = std::min(viewport[0], viewport[1]);
   info.max_storage_block = static_cast<long>(block);
-  info.reset_detection = reset_detection;
+  GLint strategy = GL_NO_RESET_NOTIFICATION;
+  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45)
+    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+  info.reset_detection = strategy == GL_LOSE_CONTEXT_ON_RESET;
   return info;
 }
 
@@ -206,10 +208,6 @@ std::string open(EGLDeviceEXT device, EglContext& out) {
   }
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, out.context))
     return with_cause("its context cannot be made current");
-  GLint strategy = GL_NO_RESET_NOTIFICATION;
-  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45)
-    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
-  out.reset_detection = strategy == GL_LOSE_CONTEXT_ON_RESET;
   return "";
 }
 
@@ -292,7 +290,7 @@ GlContext::GlContext(const std::string& device) {
       handles_ = std::make_unique<Handles>();
       const std::string problem = open(list[i], handles_->egl);
       if (problem.empty()) {
-        handles_->info = read_info(kind, handles_->egl.reset_detection);
+        handles_->info = read_info(kind);
         check_gl("context");
         return;
       }
@@ -313,10 +311,8 @@ const GlInfo& GlContext::info() const { return handles_->info; }
 bool GlContext::hardware_listed() {
   const FloatingPointGuard guard;  // drivers are loaded here, too
   require_egl();
-  for (EGLDeviceEXT device : devices()) {
-    if (describe(device, 0).kind == "hardware") return true;
-  }
-  return false;
+  return std::ranges::any_of(
+      devices(), [](EGLDeviceEXT device) { return describe(device, 0).kind == "hardware"; });
 }
 
 std::vector<GlDevice> GlContext::list_devices() {

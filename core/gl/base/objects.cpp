@@ -48,8 +48,8 @@ void bind_storage(GLuint name) {
 
 }  // namespace
 
-void throw_lost(const std::string& stage, const std::string& reason, const std::string& cause) {
-  throw Error("GL " + stage, reason, cause + ": run again, or with another {device}");
+void throw_lost(const std::string& stage, const std::string& reason) {
+  throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
 }
 
 // The numbers look random, so it is unlikely that a few of them cancel in a sum. Each step is a

@@ -17,9 +17,8 @@
 
 namespace farcull {
 
-/// Throws Error naming the GL stage: `cause` happened, and `reason` says how it was noticed.
-[[noreturn]] void throw_lost(const std::string& stage, const std::string& reason,
-                             const std::string& cause = "a command was lost");
+/// Throws Error naming the GL stage: a command was lost, and `reason` says how it was noticed.
+[[noreturn]] void throw_lost(const std::string& stage, const std::string& reason);
 
 template <void (*Delete)(GLuint)>
 class GlName {
@@ -40,19 +39,19 @@ class GlName {
   GLuint name_ = 0;
 };
 
-inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
-inline void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
-inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+/// Calls one of GL's functions that delete several objects. They are pointers of libepoxy.
+template <auto* Delete>
+void delete_one(GLuint name) {
+  (*Delete)(1, &name);
+}
 inline void delete_program(GLuint name) { glDeleteProgram(name); }
-inline void delete_query(GLuint name) { glDeleteQueries(1, &name); }
 
-using GlBuffer = GlName<delete_buffer>;
-using GlTexture = GlName<delete_texture>;
-using GlFramebuffer = GlName<delete_framebuffer>;
-using GlVertexArray = GlName<delete_vertex_array>;
+using GlBuffer = GlName<delete_one<&epoxy_glDeleteBuffers>>;
+using GlTexture = GlName<delete_one<&epoxy_glDeleteTextures>>;
+using GlFramebuffer = GlName<delete_one<&epoxy_glDeleteFramebuffers>>;
+using GlVertexArray = GlName<delete_one<&epoxy_glDeleteVertexArrays>>;
+using GlQuery = GlName<delete_one<&epoxy_glDeleteQueries>>;
 using GlProgram = GlName<delete_program>;
-using GlQuery = GlName<delete_query>;
 
 template <class Object>
 Object gl_make(void (*generate)(GLsizei, GLuint*)) {

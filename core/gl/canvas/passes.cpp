@@ -444,8 +444,6 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
 
 GlCanvas::~GlCanvas() { forget(); }
 
-const RasterLimits& GlCanvas::limits() const { return limits_; }
-
 // Deletes everything on the device, or leaves that to the context if it cannot be made current.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});

@@ -52,7 +52,7 @@ std::uint32_t sum_of(std::span<const std::byte> data) {
 }
 
 // Waits until the device has finished all commands.
-void wait(const std::string& stage) {
+void wait_for_device(const std::string& stage) {
   constexpr int kLongest = 600;  // s
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   GLenum answer = GL_TIMEOUT_EXPIRED;
@@ -121,18 +121,17 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
                             std::size_t bytes, std::uint32_t tag, const Numbers& n,
                             std::uint32_t groups) {
   glUseProgram(programs_[step]);
-  glProgramUniform1ui(programs_[step], 0, n.count);
-  glProgramUniform1ui(programs_[step], 1, n.echo);
-  glProgramUniform1ui(programs_[step], 2, n.serial);
-  glProgramUniform1ui(programs_[step], 3, n.flags);
-  glProgramUniform1ui(programs_[step], 4, n.bits);
+  for (std::size_t k = 0; k < n.size(); ++k)
+    glProgramUniform1ui(programs_[step], static_cast<GLint>(k), n[k]);
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, from.name(), static_cast<GLintptr>(offset),
                     static_cast<GLsizeiptr>(bytes));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kReport, store_.name());
   GlEcho echo;
-  echo.add({step + 1, n.count, n.echo, n.serial, n.flags, n.bits, tag, store_.tag()});
+  echo.add({step + 1});
+  echo.add(n);
+  echo.add({tag, store_.tag()});
   echoes_.push_back(echo.sum);
-  finished_ += n.count;
+  finished_ += n[0];
   const std::uint32_t row = std::min(groups, std::uint32_t(context_.info().max_compute_groups));
   glDispatchCompute(row, (groups + row - 1) / row, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -148,11 +147,7 @@ void CanvasReport::expect(const GlStore& store, std::span<const std::byte> data)
     const auto count = static_cast<std::uint32_t>(part.size() / kVec4);
     const std::uint32_t per_group = kGroup * kBatches[0];
     dispatch(0, store, at, kTagBytes + part.size(), tag,
-             {.count = count,
-              .echo = kHead + static_cast<std::uint32_t>(echoes_.size()),
-              .serial = 0,
-              .flags = 0,
-              .bits = 0},
+             {count, kHead + static_cast<std::uint32_t>(echoes_.size()), 0, 0, 0},
              (count + per_group - 1) / per_group);
   }
 }
@@ -163,12 +158,11 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
   const auto echo = kHead + static_cast<std::uint32_t>(echoes_.size());
   flags_ = count;
   dispatch(1, flags, 0, kTagBytes + flags.bytes(), flags.tag(),
-           {.count = words, .echo = echo, .serial = serial, .flags = count, .bits = echo + 1},
-           (words + per_group - 1) / per_group);
+           {words, echo, serial, count, echo + 1}, (words + per_group - 1) / per_group);
 }
 
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
-  wait(stage);
+  wait_for_device(stage);
   const std::size_t bits = kHead + echoes_.size();
   // An echo can equal this initial value by chance, but the number of finished work items cannot.
   // So if the read fails silently, that number is wrong, which is noticed below.

@@ -94,9 +94,8 @@ class CanvasReport {
   std::uint64_t bytes_in_all() const { return bytes_; }
 
  private:
-  struct Numbers {  // the uniforms of canvas_work.comp
-    std::uint32_t count, echo, serial, flags, bits;
-  };
+  /// The uniforms of canvas_work.comp: count, echo, serial, flags, bits.
+  using Numbers = std::array<std::uint32_t, 5>;
   void dispatch(std::uint32_t step, const GlStore& from, std::size_t offset, std::size_t bytes,
                 std::uint32_t tag, const Numbers& numbers, std::uint32_t groups);
 

@@ -15,11 +15,6 @@
 namespace farcull::probe {
 namespace {
 
-struct NamedFault {
-  DriverFaultKind kind;
-  const char* name;
-};
-
 ProbeResult faults(const std::string& name, const GlContext& context, const ProbeOptions& options,
                    const GlCanvasOptions& kind) {
   // One proxy stored, one asked behind it and one in front.
@@ -34,20 +29,19 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
   pass.draws = {{0, 0}, {1, 0}, {2, 1}};
   pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 2}};
   const std::vector<std::uint8_t> right = {1, 0};
-  constexpr NamedFault kLostDraw = {DriverFaultKind::lost_draw, "lost draw"};
-  const std::vector<NamedFault> tried =
-      kind.query == QueryMode::flags
-          ? std::vector<NamedFault>{kLostDraw,
-                                    {DriverFaultKind::oversized_dispatch, "oversized dispatch"},
-                                    {DriverFaultKind::unfinished_item, "unfinished invocation"}}
-          : std::vector<NamedFault>{kLostDraw,
-                                    {DriverFaultKind::lost_query, "lost query"},
-                                    {DriverFaultKind::blind_queries, "blind query"}};
+  using Kind = DriverFaultKind;
+  using Named = std::pair<Kind, std::string>;
+  const bool flags = kind.query == QueryMode::flags;
+  const Named tried[] = {{Kind::lost_draw, "lost draw"},
+                         flags ? Named(Kind::oversized_dispatch, "oversized dispatch")
+                               : Named(Kind::lost_query, "lost query"),
+                         flags ? Named(Kind::unfinished_item, "unfinished invocation")
+                               : Named(Kind::blind_queries, "blind query")};
   Worst unnoticed;
   std::string note, refusal;
-  for (const NamedFault& f : tried) {
+  for (const auto& [fault_kind, fault_name] : tried) {
     std::optional<DriverFault> fault;
-    if (!options.skipped_faults) fault.emplace(f.kind);
+    if (!options.skipped_faults) fault.emplace(fault_kind);
     GlCanvas canvas(context, DepthMode::fragment, depth_solid(), kind);
     canvas.begin(window(64, 64), drawables);
     if (fault) fault->strike();
@@ -68,8 +62,8 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
     }
     unnoticed.count(!noticed);
     unnoticed.count(!recovered);
-    note += (note.empty() ? "" : ", ") + std::string(f.name) +
-            (noticed ? " noticed" : " NOT noticed") + (recovered ? "" : " (the next pass FAILS)");
+    note += (note.empty() ? "" : ", ") + fault_name + (noticed ? " noticed" : " NOT noticed") +
+            (recovered ? "" : " (the next pass FAILS)");
   }
   return result("A7", name, unnoticed, 0, "unnoticed",
                 note + "; the pass after each is counted, too" + refusal);

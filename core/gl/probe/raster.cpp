@@ -249,11 +249,9 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
     std::vector<Proxy> proxies;
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
-        const auto& a = points[static_cast<std::size_t>(j) * (n + 1) + i];
-        const auto& b = points[static_cast<std::size_t>(j) * (n + 1) + i + 1];
-        const auto& c = points[static_cast<std::size_t>(j + 1) * (n + 1) + i + 1];
-        const auto& d = points[static_cast<std::size_t>(j + 1) * (n + 1) + i];
-        proxies.push_back(quad({a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]}));
+        const auto* const a = &points[static_cast<std::size_t>(j) * (n + 1) + i];
+        const auto &b = a[1], &c = a[n + 2], &d = a[n + 1];
+        proxies.push_back(quad({(*a)[0], (*a)[1], b[0], b[1], c[0], c[1], d[0], d[1]}));
       }
     }
     const std::vector<std::uint32_t> counts = coverage.draw(proxies);
@@ -310,18 +308,15 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
 
   Worst near;
   double near_of[4] = {};
-  {
-    Coverage coverage(256, 256, options);
-    for (std::size_t d = 0; d < 4; ++d) {
-      Worst worst;
-      for (int round = 0; round < rounds(options, 12); ++round)
-        short_edges(coverage, random, kDirections[d], reach, worst);
-      near_of[d] = worst.value;
-      near.value = std::max(near.value, worst.value);
-      near.samples += worst.samples;
-    }
+  Coverage small(256, 256, options);
+  for (std::size_t d = 0; d < 4; ++d) {
+    Worst worst;
+    for (int round = 0; round < rounds(options, 12); ++round)
+      short_edges(small, random, kDirections[d], reach, worst);
+    near_of[d] = worst.value;
+    near.value = std::max(near.value, worst.value);
+    near.samples += worst.samples;
   }
-  std::vector<ProbeResult> out;
   const int side = largest_side(context);
   const std::string strips = size(side, 64) + ", " + size(64, side) + " and 2000 x 2000";
   // Reports the target that comes nearest to its own bound.
@@ -342,17 +337,15 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     far.add(edge, vertex);
     large.add(whole, snap + vertex);
   }
-  out.push_back(result("A1", "vertex arithmetic", far.worst, far.bound, "px",
-                       "edges of 2 to 3 px all over targets of " + strips + "; displacement " +
-                           px(displacement) + " less that of A2, per axis"));
-  out.push_back(result("A1", "sides of large proxies", large.worst, large.bound, "px",
-                       "all pixels of quadrilaterals as large as those targets; with snapping"));
-  out.push_back(result("A2", "snapping", near, snap + vertex_bound(options, 256), "px",
-                       "edges near pixel centres, 256 x 256: upright " + px(near_of[0]) +
-                           ", level " + px(near_of[1]) + ", 45 degrees " + px(near_of[2]) +
-                           ", any " + px(near_of[3]) + ", per axis, looked for up to " +
-                           px(reach)));
-  return out;
+  return {result("A1", "vertex arithmetic", far.worst, far.bound, "px",
+                 "edges of 2 to 3 px all over targets of " + strips + "; displacement " +
+                     px(displacement) + " less that of A2, per axis"),
+          result("A1", "sides of large proxies", large.worst, large.bound, "px",
+                 "all pixels of quadrilaterals as large as those targets; with snapping"),
+          result("A2", "snapping", near, snap + vertex_bound(options, 256), "px",
+                 "edges near pixel centres, 256 x 256: upright " + px(near_of[0]) + ", level " +
+                     px(near_of[1]) + ", 45 degrees " + px(near_of[2]) + ", any " + px(near_of[3]) +
+                     ", per axis, looked for up to " + px(reach))};
 }
 
 std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& options) {
