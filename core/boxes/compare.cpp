@@ -47,7 +47,6 @@ HWY_INLINE std::uint32_t near_bits(const NormalLanes& normals, const OneBox& box
   return out;
 }
 
-// Compares the triangles of two blocks.
 struct Comparison {
   const BlockLanes& a;
   const BlockLanes& b;

@@ -15,7 +15,6 @@
 namespace farcull {
 namespace {
 
-// Lists the vertices of each block.
 void list_vertices(const Scene& scene, RigidBlocks& out) {
   out.first_vertex.assign(1, 0);
   for (const TriangleBlock& range : out.of->ranges) {

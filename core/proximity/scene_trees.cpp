@@ -72,7 +72,6 @@ void SceneTrees::find_least(std::uint32_t object) {
 
 namespace {
 
-// The most parts of an object.
 constexpr std::size_t kMostParts = 64;
 
 // A node of an object's tree; or, with height -1, triangle k of a leaf.

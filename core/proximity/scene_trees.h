@@ -238,7 +238,6 @@ struct Others {
     const Object& own = scene.objects[object];
     return triangle - own.first_triangle < own.triangle_count;
   }
-  bool asks_about(std::uint32_t triangle) const { return triangle < end && !is_own(triangle); }
   std::uint32_t other_of(const TrianglePair& pair) const {
     return owner[is_own(pair.a) ? pair.b : pair.a];
   }
@@ -275,13 +274,11 @@ struct Search {
   void filter();
 };
 
-/// Memory that a thread uses again in all its searches.
+/// Memory that a thread uses again in all its searches in one scene.
 class SearchMemory {
  public:
   static constexpr std::uint32_t kLeaves = 64;
   SearchMemory() : a(kLeaves), b(kLeaves) {}
-  /// To be called before searches in another scene.
-  void forget() { *this = SearchMemory(); }
 
   std::vector<BlockCorners> a, b;  // leaves of the first and the second object, at leaf % kLeaves
   std::uint64_t directions = 0;    // the number of directions used so far

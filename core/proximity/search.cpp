@@ -77,7 +77,6 @@ class Searcher {
   }
 
  private:
-  // The tree of an object.
   struct Side {
     const SceneTrees& trees;
     std::uint32_t object;
@@ -256,8 +255,10 @@ class Searcher {
   // In a search with Others: bits of the triangles of a leaf that it asks about.
   std::uint32_t asked_of(const BlockCorners& leaf) const {
     std::uint32_t out = 0;
-    for (std::uint32_t k = 0; k < leaf.count; ++k)
-      out |= std::uint32_t{others_->asks_about(leaf.triangle[k])} << k;
+    for (std::uint32_t k = 0; k < leaf.count; ++k) {
+      const std::uint32_t t = leaf.triangle[k];
+      out |= std::uint32_t{t < others_->end && !others_->is_own(t)} << k;
+    }
     return out;
   }
 

@@ -49,7 +49,6 @@ bool meet(const Box& a, const Box& b) {
          b.lo.y() <= a.hi.y() && a.lo.z() <= b.hi.z() && b.lo.z() <= a.hi.z();
 }
 
-/// The state of a triangle.
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
 /// Marks a group of one: each triangle of a `self` object is a group of its own.
@@ -329,7 +328,6 @@ void SweepPrune::fill_columns(std::span<const Box> boxes) {
   }
 }
 
-/// Sorts and sweeps each column.
 std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   std::vector<TrianglePair> pairs;
   std::vector<Key> keys;  // small, so that moving them is cheap

@@ -58,10 +58,8 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   std::array<std::vector<std::pair<int, int>>, 3> parts;
   for (std::size_t k = 0; k < 3; ++k) {
     const int from = block.from[k], to = block.to[k], middle = from + (to - from) / 2;
-    if (to - from > 1)
-      parts[k] = {{from, middle}, {middle, to}};
-    else
-      parts[k] = {{from, to}};
+    parts[k].emplace_back(from, to - from > 1 ? middle : to);
+    if (to - from > 1) parts[k].emplace_back(middle, to);
   }
   const std::size_t first = below.triangles.size();
   below.triangles.insert(below.triangles.end(), kept.begin(), kept.end());

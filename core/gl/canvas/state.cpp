@@ -118,8 +118,11 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
 }
 
 void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t offset,
-                            std::size_t bytes, std::uint32_t tag, const Numbers& n,
-                            std::uint32_t groups) {
+                            std::size_t bytes, std::uint32_t tag, std::uint32_t count,
+                            std::uint32_t serial, std::uint32_t flags) {
+  const std::uint32_t place = kHead + static_cast<std::uint32_t>(echoes_.size());
+  // The uniforms of canvas_work.comp: count, echo, serial, flags, bits.
+  const std::array n = {count, place, serial, flags, step == 1 ? place + 1 : 0};
   glUseProgram(programs_[step]);
   for (std::size_t k = 0; k < n.size(); ++k)
     glProgramUniform1ui(programs_[step], static_cast<GLint>(k), n[k]);
@@ -131,7 +134,9 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
   echo.add(n);
   echo.add({tag, store_.tag()});
   echoes_.push_back(echo.sum);
-  finished_ += n[0];
+  finished_ += count;
+  const std::uint32_t per_group = kGroup * kBatches[step];
+  const std::uint32_t groups = (count + per_group - 1) / per_group;
   const std::uint32_t row = std::min(groups, std::uint32_t(context_.info().max_compute_groups));
   glDispatchCompute(row, (groups + row - 1) / row, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -144,21 +149,14 @@ void CanvasReport::expect(const GlStore& store, std::span<const std::byte> data)
     std::uint32_t tag = store.tag();
     if (at > 0) std::memcpy(&tag, data.data() + at - kTagBytes, sizeof tag);
     sum_ += sum_of(part);
-    const auto count = static_cast<std::uint32_t>(part.size() / kVec4);
-    const std::uint32_t per_group = kGroup * kBatches[0];
     dispatch(0, store, at, kTagBytes + part.size(), tag,
-             {count, kHead + static_cast<std::uint32_t>(echoes_.size()), 0, 0, 0},
-             (count + per_group - 1) / per_group);
+             static_cast<std::uint32_t>(part.size() / kVec4), 0, 0);
   }
 }
 
 void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count) {
-  const std::uint32_t words = (count + 31) / 32;
-  const std::uint32_t per_group = kGroup * kBatches[1];
-  const auto echo = kHead + static_cast<std::uint32_t>(echoes_.size());
   flags_ = count;
-  dispatch(1, flags, 0, kTagBytes + flags.bytes(), flags.tag(),
-           {words, echo, serial, count, echo + 1}, (words + per_group - 1) / per_group);
+  dispatch(1, flags, 0, kTagBytes + flags.bytes(), flags.tag(), (count + 31) / 32, serial, count);
 }
 
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {

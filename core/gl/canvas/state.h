@@ -60,8 +60,8 @@ struct CanvasPass {
   }
 };
 
-/// The binding of the report in every program of the canvas.
-constexpr GLuint kReport = 3;
+/// Storage buffer bindings of the programs of the canvas.
+constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2, kReport = 3;
 
 /// A storage buffer for what the device reports. Every batch of draws and every dispatch writes an
 /// echo into it (GlEcho: a checksum of what it read). A dispatch also adds how many of its work
@@ -94,10 +94,8 @@ class CanvasReport {
   std::uint64_t bytes_in_all() const { return bytes_; }
 
  private:
-  /// The uniforms of canvas_work.comp: count, echo, serial, flags, bits.
-  using Numbers = std::array<std::uint32_t, 5>;
   void dispatch(std::uint32_t step, const GlStore& from, std::size_t offset, std::size_t bytes,
-                std::uint32_t tag, const Numbers& numbers, std::uint32_t groups);
+                std::uint32_t tag, std::uint32_t count, std::uint32_t serial, std::uint32_t flags);
 
   const GlContext& context_;
   std::size_t block_, piece_;
@@ -108,9 +106,6 @@ class CanvasReport {
   std::uint32_t flags_ = 0;               // how many are packed
   std::uint64_t dispatches_ = 0, bytes_ = 0;
 };
-
-// Storage buffer bindings of canvas.vert and canvas.frag, beside kReport.
-constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2;
 
 /// A program of canvas.vert and canvas.frag, and the echo of its uniforms.
 struct CanvasProgram {

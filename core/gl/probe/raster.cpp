@@ -353,12 +353,7 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
   const double snap = snap_bound(context, {});
   Coverage small(1024, 1024, options);
   const double margin = snap + vertex_bound({}, 1024);
-  std::vector<ProbeResult> out;
-  out.push_back(
-      result("A3", "split quadrilaterals cover once",
-             split_quads(small, random, margin, rounds(options, 10)), 0, "pixels",
-             "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
-             "pixels inside that were not covered once"));
+  const Worst split = split_quads(small, random, margin, rounds(options, 10));
   Worst wrong, misplaced;
   const int side = largest_side(context);
   for (const auto& [width, height] : {std::pair{1024, 1024}, {side, 64}, {64, side}}) {
@@ -370,18 +365,21 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
     const std::vector<std::uint32_t> place = large.target().colour();
     for (std::size_t i = 0; i < place.size(); ++i) misplaced.count(place[i] != i + 1);
   }
-  out.push_back(
-      result("A3", "large quadrilaterals cover once", wrong, 0, "pixels",
-             "as large as targets of 1024 x 1024, " + size(side, 64) + " and " + size(64, side)));
   Coverage medium(512, 512, options);
-  out.push_back(result("A3", "abutting triangles cover once", abutting_mesh(medium, random), 0,
-                       "pixels", "shaken meshes with cells of 0.7 to 9.1 px"));
-  out.push_back(result("A3", "no area covers nothing",
-                       zero_area(medium, random, options.fat_zero_area), 0, "fragments",
-                       "triangles that are points and segments, half of them on pixel centres"));
-  out.push_back(result("A9", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
-                       "every pixel of the same three targets"));
-  return out;
+  const Worst mesh = abutting_mesh(medium, random);
+  const Worst flat = zero_area(medium, random, options.fat_zero_area);
+  return {
+      result("A3", "split quadrilaterals cover once", split, 0, "pixels",
+             "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
+             "pixels inside that were not covered once"),
+      result("A3", "large quadrilaterals cover once", wrong, 0, "pixels",
+             "as large as targets of 1024 x 1024, " + size(side, 64) + " and " + size(64, side)),
+      result("A3", "abutting triangles cover once", mesh, 0, "pixels",
+             "shaken meshes with cells of 0.7 to 9.1 px"),
+      result("A3", "no area covers nothing", flat, 0, "fragments",
+             "triangles that are points and segments, half of them on pixel centres"),
+      result("A9", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
+             "every pixel of the same three targets")};
 }
 
 }  // namespace farcull::probe
