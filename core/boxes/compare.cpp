@@ -1,7 +1,6 @@
 // Compares the boxes of two blocks in floats, on lanes: one box with as many others at once as a
-// vector holds. Boxes that touch in floats are compared again in doubles (core/boxes/join.cpp).
-// Only comparisons, sums and products of floats decide, without fused operations, so every
-// instruction set gives the same pairs in the same order.
+// vector holds. Only comparisons, sums and products of floats decide, without fused operations, so
+// every instruction set gives the same pairs in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/compare.cpp"
 #include <hwy/foreach_target.h>

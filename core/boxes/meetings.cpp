@@ -1,5 +1,4 @@
-// Joins the boxes of objects, then those of the blocks of objects that meet. The number of overlaps
-// decides how pairs are found: blocks along the axes, oriented blocks, or a tree of all boxes.
+// Joins the boxes of objects, then those of the blocks of objects that meet.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>

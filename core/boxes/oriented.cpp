@@ -1,7 +1,5 @@
 // A block's frame comes from the second moments of its corners. Blocks are the leaves of a tree of
-// oriented boxes, which is searched for one block after the other. Only sums, products and
-// comparisons of floats decide, without fused operations, so every instruction set gives the same
-// pairs.
+// oriented boxes, which is searched for one block after the other. Floats decide as in compare.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>

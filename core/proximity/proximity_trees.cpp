@@ -143,7 +143,6 @@ struct Crowd {
   std::vector<std::uint32_t> owner;
 };
 
-// Memory of a thread that looks for nearest objects.
 struct NearestMemory {
   SearchMemory of_two;
   std::optional<SearchMemory> of_all;  // made at the first search with all triangles

@@ -156,7 +156,6 @@ class SceneTrees {
 /// The corners of sixteen scaled triangles, in columns: column 3 * corner + axis.
 using CornerColumns = std::array<std::array<double, kWide>, 9>;
 
-/// Pairs of scaled triangles.
 struct alignas(64) PairBatch {
   CornerColumns a{}, b{};
   std::array<TrianglePair, kWide> pairs{};
@@ -248,7 +247,6 @@ struct Others {
   void add(const TrianglePair& pair, double upper);
 };
 
-/// A search that has begun.
 struct Search {
   ObjectPair objects;
   Others* others = nullptr;  // of objects.a; if set, objects.b is the object of Others::all
@@ -275,8 +273,7 @@ struct Search {
 };
 
 /// Memory that a thread uses again in all its searches in one scene.
-class SearchMemory {
- public:
+struct SearchMemory {
   static constexpr std::uint32_t kLeaves = 64;
   SearchMemory() : a(kLeaves), b(kLeaves) {}
 

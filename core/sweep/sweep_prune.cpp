@@ -1,7 +1,5 @@
-// Objects are swept by BoxSweep: insertion sort moves the ends of the last call into their new
-// order and reports which ends changed places. The triangles that may have candidates are put in
-// columns across the sweep's axis, in the order of the last call, and each column is sorted and
-// swept.
+// Objects are swept by BoxSweep. The triangles that may have candidates are put in columns across
+// the sweep's axis, in the order of the last call, and each column is sorted and swept.
 #include "core/sweep/sweep_prune.h"
 
 #include <algorithm>

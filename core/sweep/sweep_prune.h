@@ -92,8 +92,7 @@ class SweepPrune {
   /// are then the pairs whose given boxes overlap. Throws std::logic_error if there are not as many
   /// boxes as triangles.
   SweepPruneResult find(const Scene& scene, std::span<const Box> boxes);
-  /// Makes the next call start as the first one did.
-  void forget();
+  void forget();  // as BoxSweep::forget()
 
  private:
   /// The columns that the box of a triangle meets, first to last along two axes.

@@ -1,7 +1,6 @@
 // Visits the blocks of cells level by level. Each block has the triangles that can matter to its
 // cells, and passes on those that can still matter to its parts. A level reads only results of the
-// levels above it, so the answer does not depend on the number of threads. Only for the two forms
-// of the diagram (voronoi.h).
+// levels above it, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>

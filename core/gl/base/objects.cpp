@@ -148,13 +148,10 @@ GlProgram gl_program(const std::string& name, const std::vector<std::string>& de
 
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  if (bytes < 16) {
-    glBufferData(GL_SHADER_STORAGE_BUFFER, 16, nullptr, GL_STREAM_DRAW);
-    if (bytes > 0 && data)
-      glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-  } else {
-    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
-  }
+  const bool small = bytes < 16;
+  const auto size = static_cast<GLsizeiptr>(bytes);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, small ? 16 : size, small ? nullptr : data, GL_STREAM_DRAW);
+  if (small && bytes > 0 && data) glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, data);
 }
 
 }  // namespace farcull

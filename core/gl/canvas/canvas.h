@@ -72,7 +72,6 @@ class GlCanvas final : public Canvas {
   CanvasWork earlier_;                  // work of states that were dropped
 };
 
-/// A GlCanvas behind the interface Canvas.
 std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
                                   const SolidProgram& solid, const GlCanvasOptions& options = {});
 

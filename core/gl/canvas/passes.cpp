@@ -1,7 +1,6 @@
 // The passes of the GL canvas. A pass is cut into batches of consecutive draws of a step that read
 // the same element buffer. The draw list is sent, and drawn batch by batch. The results are used
-// only if the report, the count of primitives and the control items show that everything ran. After
-// any failure GlCanvas forgets its state, since the contents of the device are then unknown.
+// only if the report, the count of primitives and the control items show that everything ran.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>

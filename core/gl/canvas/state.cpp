@@ -1,7 +1,6 @@
 // Sets the state that a pass draws with. Each value that GL can return is read back after it was
 // set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
-// flags. Each dispatch and each batch of draws leaves an echo in the report, which is compared with
-// the echo computed here.
+// flags. The report compares each echo with the one computed here.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>
@@ -26,11 +25,7 @@ void require(bool set, const char* what) {
 }
 
 void set_enabled(GLenum capability, bool on, const char* what) {
-  if (on) {
-    glEnable(capability);
-  } else {
-    glDisable(capability);
-  }
+  (on ? glEnable : glDisable)(capability);
   require(glIsEnabled(capability) == (on ? GL_TRUE : GL_FALSE), what);
 }
 

@@ -120,8 +120,6 @@ struct CanvasElements {
   std::vector<std::byte> bytes;  // the bytes that were sent to them
 };
 
-/// The canvas on the device: its programs, render targets and stores, and the state that a pass
-/// sets before it draws.
 struct CanvasState {
   const GlContext& context;
   DepthMode mode;

@@ -41,7 +41,6 @@ inline void blend(Rgba& pixel, const Rgba& colour, double part) {
   pixel = {mix(pixel.r, colour.r), mix(pixel.g, colour.g), mix(pixel.b, colour.b), 255};
 }
 
-/// A triangle of the scene and how it is drawn.
 struct PictureTriangle {
   std::uint32_t triangle = 0;
   Rgba colour;         // drawn opaque; its `a` is ignored

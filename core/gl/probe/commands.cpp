@@ -1,8 +1,7 @@
 // Probes of A7, A8 and A10. A7: lost commands are noticed, and the next answer is right. A8: values
 // that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor repeat
-// an update. A missing or weak barrier shows only on devices that reorder commands, so these probes
-// can refute A8 only on the device that they run on. A10: the driver has no threads that are known
-// to damage memory.
+// an update; a weak barrier shows only on devices that reorder commands. A10: the driver has no
+// threads that are known to damage memory.
 #include <algorithm>
 #include <array>
 #include <utility>
