@@ -104,7 +104,6 @@ inline bool overlap(const FloatBox& a, const FloatBox& b) {
 #endif
 }
 
-/// FloatBox for float, Box for double.
 template <class Number>
 using BoxOf = std::conditional_t<std::is_same_v<Number, float>, FloatBox, Box>;
 template <class Number>

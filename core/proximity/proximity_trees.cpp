@@ -272,8 +272,8 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.add_work(search.counts);
 }
 
-// Calls visit(other) for each object with at least this number, itself only if it is `self`, whose
-// parts are at most the limit (scaled) from those of the object.
+// Calls visit(other) for each later object whose parts are at most `limit` (scaled) from parts of
+// the object, and for the object itself if it is `self`.
 template <class Visit>
 void for_later_within(const SceneTrees& trees, std::uint32_t object, double limit,
                       const Visit& visit) {
@@ -312,59 +312,7 @@ struct ProximityTrees::State {
   mutable std::atomic<std::uint64_t> box_pairs = 0, triangle_pairs = 0, kept = 0;
 
   std::vector<NearPairs> nearest(std::size_t k, double within, std::span<const NearHint> hints,
-                                 bool all, const Progress& progress) const {
-    if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
-    if (progress) progress(StageKind::near);
-    if (k == 0) return {};
-    const Scene& scene = trees.scene();
-    std::vector<NearHint> good;
-    for (const NearHint& hint : hints) {
-      const ObjectPair& objects = hint.objects;
-      const bool two = objects.a < objects.b && objects.b < scene.objects.size();
-      if (two && fits(scene, objects, hint.triangles)) good.push_back(hint);
-    }
-    std::ranges::stable_sort(good, {}, &NearHint::objects);
-    good.erase(std::ranges::unique(good, {}, &NearHint::objects).begin(), good.end());
-    const std::size_t objects = scene.objects.size();
-    std::vector<std::vector<NearHint>> hints_of(objects);
-    for (const NearHint& hint : good) {
-      hints_of[hint.objects.a].push_back(hint);
-      hints_of[hint.objects.b].push_back(hint);
-    }
-    const double limit = scaled_limit(trees, within);
-    std::vector<std::vector<Found>> found(objects);
-    std::vector<ProximityCounts> parts(objects);
-    std::unique_ptr<Crowd> crowd;
-    if (Crowd::is(trees)) crowd = std::make_unique<Crowd>(scene, threads);
-    for_each_with_memory<NearestMemory>(
-        objects, threads, [&](std::size_t o, NearestMemory& memory) {
-          const auto object = static_cast<std::uint32_t>(o);
-          if (trees.tree(object).levels == 0) return;
-          const Crowd* const asked = Crowd::is_small(trees, object) ? crowd.get() : nullptr;
-          found[o] = found_by(trees, asked, object, k, limit, hints_of[o], all, memory, parts[o]);
-        });
-    std::vector<Found> founds;
-    ProximityCounts counts;
-    for (std::size_t o = 0; o < objects; ++o) {
-      counts.add_work(parts[o]);
-      std::ranges::move(found[o], std::back_inserter(founds));
-    }
-    // Two objects may each have found the other; then the answer with the larger limit is kept. An
-    // answer has all nearest pairs if their distance is within its limit. That holds for at least
-    // one of the two answers, so it holds for the one with the larger limit.
-    std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
-      if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
-      return x.limit > y.limit;
-    });
-    std::vector<NearPairs> out;
-    for (Found& f : founds) {
-      if (!out.empty() && out.back().objects == f.near.objects) continue;
-      counts.kept += f.near.pairs.size();
-      out.push_back(std::move(f.near));
-    }
-    add(counts);
-    return out;
-  }
+                                 bool all, const Progress& progress) const;
   void add(const ProximityCounts& counts) const {
     box_pairs += counts.box_pairs;
     triangle_pairs += counts.triangle_pairs;
@@ -413,6 +361,61 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
     state_->add(search.counts);
     long_ones[k].reset();
   }
+  return out;
+}
+
+std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double within,
+                                                      std::span<const NearHint> hints, bool all,
+                                                      const Progress& progress) const {
+  if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
+  if (progress) progress(StageKind::near);
+  if (k == 0) return {};
+  const Scene& scene = trees.scene();
+  std::vector<NearHint> good;
+  for (const NearHint& hint : hints) {
+    const ObjectPair& objects = hint.objects;
+    const bool two = objects.a < objects.b && objects.b < scene.objects.size();
+    if (two && fits(scene, objects, hint.triangles)) good.push_back(hint);
+  }
+  std::ranges::stable_sort(good, {}, &NearHint::objects);
+  good.erase(std::ranges::unique(good, {}, &NearHint::objects).begin(), good.end());
+  const std::size_t objects = scene.objects.size();
+  std::vector<std::vector<NearHint>> hints_of(objects);
+  for (const NearHint& hint : good) {
+    hints_of[hint.objects.a].push_back(hint);
+    hints_of[hint.objects.b].push_back(hint);
+  }
+  const double limit = scaled_limit(trees, within);
+  std::vector<std::vector<Found>> found(objects);
+  std::vector<ProximityCounts> parts(objects);
+  std::unique_ptr<Crowd> crowd;
+  if (Crowd::is(trees)) crowd = std::make_unique<Crowd>(scene, threads);
+  for_each_with_memory<NearestMemory>(objects, threads, [&](std::size_t o, NearestMemory& memory) {
+    const auto object = static_cast<std::uint32_t>(o);
+    if (trees.tree(object).levels == 0) return;
+    const Crowd* const asked = Crowd::is_small(trees, object) ? crowd.get() : nullptr;
+    found[o] = found_by(trees, asked, object, k, limit, hints_of[o], all, memory, parts[o]);
+  });
+  std::vector<Found> founds;
+  ProximityCounts counts;
+  for (std::size_t o = 0; o < objects; ++o) {
+    counts.add_work(parts[o]);
+    std::ranges::move(found[o], std::back_inserter(founds));
+  }
+  // Two objects may each have found the other; then the answer with the larger limit is kept. An
+  // answer has all nearest pairs if their distance is within its limit. That holds for at least
+  // one of the two answers, so it holds for the one with the larger limit.
+  std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
+    if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
+    return x.limit > y.limit;
+  });
+  std::vector<NearPairs> out;
+  for (Found& f : founds) {
+    if (!out.empty() && out.back().objects == f.near.objects) continue;
+    counts.kept += f.near.pairs.size();
+    out.push_back(std::move(f.near));
+  }
+  add(counts);
   return out;
 }
 

@@ -169,7 +169,6 @@ struct alignas(64) BatchBounds {
   std::array<std::array<double, kWide>, 3> direction;
 };
 
-/// The triangles of a leaf, ready for lanes.
 struct alignas(64) BlockCorners {
   CornerColumns corner;
   WideBoxes<double> boxes;  // of the triangles

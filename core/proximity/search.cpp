@@ -193,13 +193,13 @@ class Searcher {
         out.push_back(
             {squares[k], a ? child(at.a, k) : at.a, a ? at.b : child(at.b, k), a_height, b_height});
       }
-      count_boxes(1);
+      search_.counts.box_pairs += kWide;
       return;
     }
     const WideBoxes<double>& own = a_.children(at.a_height, at.a);
     const WideBoxes<double>& other = b_.children(at.b_height, at.b);
     std::uint32_t columns = near_boxes(other, a_.box_of(at.a_height, at.a), limit, squares);
-    count_boxes(1 + static_cast<std::size_t>(std::popcount(columns)));
+    search_.counts.box_pairs += kWide * (1 + static_cast<std::size_t>(std::popcount(columns)));
     while (columns != 0) {
       const std::size_t j = next_bit(columns);
       std::uint32_t bits = near_boxes(own, OneBox(other, j), limit, squares);
@@ -213,7 +213,6 @@ class Searcher {
   static std::uint32_t child(std::uint32_t node, std::size_t k) {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
-  void count_boxes(std::size_t blocks) { search_.counts.box_pairs += kWide * blocks; }
 
   // Puts the pairs of triangles of two leaves that may be near into the batch.
   HWY_INLINE void compare_leaves(const NodePair& at) {
@@ -233,7 +232,7 @@ class Searcher {
     std::uint32_t rows = near_boxes(a.boxes, b_.box_of(0, at.b), square_limit_, squares);
     const std::uint32_t columns =
         asked & near_boxes(b.boxes, a_.box_of(0, at.a), square_limit_, squares);
-    count_boxes(2 + static_cast<std::size_t>(std::popcount(rows)));
+    search_.counts.box_pairs += kWide * (2 + static_cast<std::size_t>(std::popcount(rows)));
     const bool same = self_ && at.a == at.b;
     std::array<std::uint32_t, kWide> near{};  // per row, bits of the columns
     for (; rows != 0; rows &= rows - 1) {

@@ -192,7 +192,7 @@ bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   return false;
 }
 
-// Draws the batches of a pass and returns their number of primitives.
+// Returns the number of primitives.
 std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   const bool with_flags = options.query == QueryMode::flags;
   std::uint64_t primitives_of_pass = 0;

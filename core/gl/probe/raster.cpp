@@ -319,7 +319,6 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
   }
   const int side = largest_side(context);
   const std::string strips = size(side, 64) + ", " + size(64, side) + " and 2000 x 2000";
-  // Reports the target that comes nearest to its own bound.
   Tightest far, large;
   double displacement = 0;
   for (const auto& [width, height] : {std::pair{side, 64}, std::pair{64, side}, {2000, 2000}}) {
