@@ -110,10 +110,9 @@ std::string Sha256::digest() {
     const char c = static_cast<char>(bits >> (8 * byte));
     add({&c, 1});
   }
-  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string out;
   for (const std::uint32_t word : state_) {
-    for (int shift = 28; shift >= 0; shift -= 4) out += kDigits[word >> shift & 15];
+    for (int shift = 28; shift >= 0; shift -= 4) out += "0123456789abcdef"[word >> shift & 15];
   }
   return out;
 }

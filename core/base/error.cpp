@@ -13,11 +13,8 @@ bool is_parameter(const std::string& name) {
 
 std::string sentence(const std::string& where, const std::string& reason, const std::string& remedy,
                      long line) {
-  std::string text = where;
-  if (line > 0) text += ":" + std::to_string(line);
-  text += ": " + reason;
-  if (!remedy.empty()) text += "; " + remedy;
-  return text;
+  return where + (line > 0 ? ":" + std::to_string(line) : "") + ": " + reason +
+         (remedy.empty() ? "" : "; " + remedy);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <string_view>
 #include <tuple>
-#include <utility>
 
 /// Use inside a struct: makes these members its fields, with these names and in this order.
 ///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };
@@ -41,12 +40,11 @@ concept HasFields = requires(const T& value) {
 /// Adds each field of `more` to the same field of `sum`.
 template <HasFields T>
 void add_fields(const T& more, T& sum) {
-  const auto from = more.members();
-  const auto to = sum.members();
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    ((std::get<I>(to) += std::get<I>(from)), ...);
-  }
-  (std::make_index_sequence<std::tuple_size_v<decltype(from)>>{});
+  std::apply(
+      [&](auto&... to) {
+        std::apply([&](const auto&... from) { ((to += from), ...); }, more.members());
+      },
+      sum.members());
 }
 
 }  // namespace farcull

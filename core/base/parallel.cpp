@@ -172,10 +172,8 @@ Pool& pool() {
 
 void run_parts(std::size_t parts, void (*part)(const void*, std::size_t), const void* data) {
   stop_point();
-  if (parts <= 1) {
-    if (parts == 1) part(data, 0);
-    return;
-  }
+  if (parts == 0) return;
+  if (parts == 1) return part(data, 0);
   Batch batch{part, data, parts, stop_requested};
   pool().run(batch);
 }

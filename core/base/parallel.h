@@ -52,8 +52,6 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
   return std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores);
 }
 
-// ---- work of many items of unlike length, shared by all threads ----
-
 /// Calls work(k, memory) once for each k in 0 .. count - 1; the next k goes to any thread that is
 /// free. Each thread makes one Memory and uses it in all its calls. threads: 0 for as many as there
 /// are cores. An exception of `work` is thrown again here.
@@ -73,8 +71,6 @@ void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
   struct Nothing {};
   for_each_with_memory<Nothing>(count, threads, [&](std::size_t k, Nothing&) { work(k); });
 }
-
-// ---- a call in a thread of its own, which another thread can stop ----
 
 /// Thrown inside a call that was stopped. It is not an Error, because nothing is wrong.
 class Stopped : public std::exception {

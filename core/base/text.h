@@ -2,6 +2,7 @@
 // and tells whether a stream is a terminal and how wide it is.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
@@ -43,12 +44,8 @@ inline std::string did_you_mean(const std::string& name) {
 
 /// 1234567 as 1,234,567.
 inline std::string grouped(std::uint64_t n) {
-  const std::string digits = std::to_string(n);
-  std::string out;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) out += ',';
-    out += digits[i];
-  }
+  std::string out = std::to_string(n);
+  for (std::size_t at = out.size(); at > 3;) out.insert(at -= 3, 1, ',');
   return out;
 }
 
@@ -60,9 +57,8 @@ inline std::string shortest(double value) {
 
 /// The text in one line: each control character becomes a blank.
 inline std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' '; }, ' ');
   return text;
 }
 
@@ -83,8 +79,6 @@ inline std::string_view json_fault(std::string_view message) {
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);
 }
-
-// ---- the terminal ----
 
 /// True if the stream is a terminal; false also if the stream is closed.
 bool is_terminal(std::FILE* stream);

@@ -28,7 +28,6 @@ struct UninitializedAllocator : std::allocator<T> {
   }
 };
 
-/// A vector whose resize() leaves new elements without a value.
 template <class T>
 using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 

@@ -133,19 +133,6 @@ struct Placed {
   std::uint32_t box;
 };
 
-Placed placed(const Box& box, std::uint32_t k) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  Placed out{{}, {}, k};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto half = [&](const Vec3& end) {
-      return 0.5 * std::clamp(end[static_cast<Eigen::Index>(axis)], -kLargest, kLargest);
-    };
-    out.middle[axis] = half(box.lo) + half(box.hi);
-    out.half[axis] = half(box.hi) - half(box.lo);
-  }
-  return out;
-}
-
 // The axis along which most middles lie farthest apart, and the range of their coordinates on it.
 struct Spread {
   std::size_t axis = 0;
@@ -273,9 +260,19 @@ std::size_t blocks_of_tree(std::size_t leaves) {
 }
 
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order) {
-  std::vector<Placed> items(boxes.size());
-  for (std::size_t k = 0; k < items.size(); ++k)
-    items[k] = placed(boxes[k], static_cast<std::uint32_t>(k));
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  std::vector<Placed> items;
+  items.reserve(boxes.size());
+  for (const Box& box : boxes) {
+    Placed& item = items.emplace_back(Placed{{}, {}, static_cast<std::uint32_t>(items.size())});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto half = [&](const Vec3& end) {
+        return 0.5 * std::clamp(end[static_cast<Eigen::Index>(axis)], -kLargest, kLargest);
+      };
+      item.middle[axis] = half(box.lo) + half(box.hi);
+      item.half[axis] = half(box.hi) - half(box.lo);
+    }
+  }
   sort_in_place(items, 0);
   for (std::size_t k = 0; k < items.size(); ++k) order[k] = items[k].box;
 }

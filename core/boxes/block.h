@@ -104,7 +104,6 @@ inline bool overlap(const FloatBox& a, const FloatBox& b) {
 #endif
 }
 
-/// FloatBox for float, Box for double.
 template <class Number>
 using BoxOf = std::conditional_t<std::is_same_v<Number, float>, FloatBox, Box>;
 template <class Number>
@@ -204,31 +203,6 @@ BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Nu
   }
   if (!boxes.empty()) out.box = boxes[0];
   return out;
-}
-
-/// Updates a tree after the boxes of these leaves have changed. leaves: ascending, each once.
-/// box_of_leaf(leaf): its new box.
-template <class Number, class BoxOfLeaf>
-void update_tree(const BoxOfLeaf& box_of_leaf, std::vector<std::uint32_t> leaves,
-                 std::span<WideBoxes<Number>> blocks, BoxTree<Number>& tree) {
-  for (const std::uint32_t leaf : leaves)
-    blocks[tree.first[0] + leaf / kWide].set(leaf % kWide, box_of_leaf(leaf));
-  for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
-    std::size_t nodes = 0;  // nodes found; `leaves` begins with their numbers, as the next children
-    for (const std::uint32_t child : leaves) {
-      const std::uint32_t node = child / kWide;
-      if (nodes > 0 && leaves[nodes - 1] == node) continue;
-      leaves[nodes++] = node;
-      BoxOf<Number> all = empty_box<Number>();
-      for (std::size_t k = 0; k < kWide; ++k) all.add(blocks[tree.first[height] + node].get(k));
-      if (height + 1 < static_cast<std::size_t>(tree.levels)) {
-        blocks[tree.first[height + 1] + node / kWide].set(node % kWide, all);
-      } else {
-        tree.box = all;
-      }
-    }
-    leaves.resize(nodes);
-  }
 }
 
 /// Orders boxes for a tree over them, so that neighbours in the order are close. Each cut halves

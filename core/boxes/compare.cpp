@@ -1,7 +1,6 @@
 // Compares the boxes of two blocks in floats, on lanes: one box with as many others at once as a
-// vector holds. Boxes that touch in floats are compared again in doubles (core/boxes/join.cpp).
-// Only comparisons, sums and products of floats decide, without fused operations, so every
-// instruction set gives the same pairs in the same order.
+// vector holds. Only comparisons, sums and products of floats decide, without fused operations, so
+// every instruction set gives the same pairs in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/compare.cpp"
 #include <hwy/foreach_target.h>
@@ -47,50 +46,43 @@ HWY_INLINE std::uint32_t near_bits(const NormalLanes& normals, const OneBox& box
   return out;
 }
 
-// Compares the triangles of two blocks.
-class Comparison {
- public:
-  // Null vertices: pairs with a common vertex stay. Null normals: normals are not compared.
-  HWY_INLINE Comparison(const BlockLanes& a, const BlockLanes& b, const VertexBlock* a_vertices,
-                        const VertexBlock* b_vertices, const NormalLanes* a_normals,
-                        const NormalLanes* b_normals)
-      : a_(a),
-        b_(b),
-        a_vertices_(a_vertices),
-        b_vertices_(b_vertices),
-        a_normals_(a_normals),
-        b_normals_(b_normals) {}
+struct Comparison {
+  const BlockLanes& a;
+  const BlockLanes& b;
+  const VertexBlock* a_vertices;  // null: pairs with a common vertex stay
+  const VertexBlock* b_vertices;
+  const NormalLanes* a_normals;  // null: normals are not compared
+  const NormalLanes* b_normals;
 
   // Appends to `certain` and `perhaps`, which have room for 272 more pairs each.
   HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
-    const OneBox bound(b_.bound);
-    std::uint32_t rows = boxes::overlapping_bits(a_.boxes, bound);
-    if (a_normals_ != nullptr && rows != 0) {
-      rows &= near_bits(*a_normals_, bound);
-      if (rows == 0 || near_bits(*b_normals_, OneBox(a_.bound)) == 0) return;
+    const OneBox bound(b.bound);
+    std::uint32_t rows = boxes::overlapping_bits(a.boxes, bound);
+    if (a_normals != nullptr && rows != 0) {
+      rows &= near_bits(*a_normals, bound);
+      if (rows == 0 || near_bits(*b_normals, OneBox(a.bound)) == 0) return;
     }
     while (rows != 0) write_row(boxes::next_bit(rows), certain, perhaps);
   }
-
- private:
   HWY_INLINE void write_row(std::size_t row, TrianglePair*& certain, TrianglePair*& perhaps) const {
-    const OneBox box(a_.boxes, row);
-    const bool same = &a_ == &b_;
+    const OneBox box(a.boxes, row);
+    const bool same = &a == &b;
     for (std::size_t from = same ? row / kLanes * kLanes : 0; from < kWide; from += kLanes) {
-      WordMask met = hn::RebindMask(Words(), boxes::overlapping(b_.boxes, from, box));
+      WordMask met = hn::RebindMask(Words(), boxes::overlapping(b.boxes, from, box));
       if (same) met = hn::And(met, behind(row, from));
       if (hn::AllFalse(Words(), met)) continue;
-      if (a_vertices_ != nullptr) {
+      if (a_vertices != nullptr) {
         met = hn::And(met, hn::Not(neighbours(row, from)));
         if (hn::AllFalse(Words(), met)) continue;
       }
-      if (a_normals_ != nullptr) {
-        met = hn::And(met, hn::RebindMask(Words(), near(*b_normals_, from, box)));
+      if (a_normals != nullptr) {
+        met = hn::And(met, hn::RebindMask(Words(), near(*b_normals, from, box)));
         if (hn::AllFalse(Words(), met)) continue;
         met = hn::And(met, hn::RebindMask(Words(), near_row(row, from)));
         if (hn::AllFalse(Words(), met)) continue;
       }
-      const WordMask inside = hn::RebindMask(Words(), overlapping_inside(from, box));
+      const WordMask inside =
+          hn::RebindMask(Words(), boxes::overlapping_inside(b.boxes, from, box));
       put(row, from, hn::And(met, inside), certain);
       const WordMask touching = hn::And(met, hn::Not(inside));
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
@@ -100,23 +92,14 @@ class Comparison {
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
-      const float n = a_normals_->normal[k][row];
+      const float n = a_normals->normal[k][row];
       const auto direction = hn::Set(Numbers(), n);
       const std::size_t low = n < 0 ? k + 3 : k, high = n < 0 ? k : k + 3;
-      lo = hn::Add(lo, hn::Mul(direction, boxes::column(b_.boxes, low, from)));
-      hi = hn::Add(hi, hn::Mul(direction, boxes::column(b_.boxes, high, from)));
+      lo = hn::Add(lo, hn::Mul(direction, boxes::column(b.boxes, low, from)));
+      hi = hn::Add(hi, hn::Mul(direction, boxes::column(b.boxes, high, from)));
     }
-    return hn::And(hn::Le(lo, hn::Set(Numbers(), a_normals_->hi[row])),
-                   hn::Ge(hi, hn::Set(Numbers(), a_normals_->lo[row])));
-  }
-  // Mask of the boxes of b, from lane `from` on, that overlap the box and do not only touch it.
-  HWY_INLINE hn::Mask<Numbers> overlapping_inside(std::size_t from, const OneBox& box) const {
-    const auto along = [&](std::size_t axis, hn::Vec<Numbers> lo, hn::Vec<Numbers> hi) {
-      return hn::And(hn::Lt(boxes::column(b_.boxes, axis, from), hi),
-                     hn::Gt(boxes::column(b_.boxes, axis + 3, from), lo));
-    };
-    return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
-                   along(2, box.z0, box.z1));
+    return hn::And(hn::Le(lo, hn::Set(Numbers(), a_normals->hi[row])),
+                   hn::Ge(hi, hn::Set(Numbers(), a_normals->lo[row])));
   }
   // Mask of the lanes, from `from` on, that come after the row.
   HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
@@ -125,29 +108,22 @@ class Comparison {
   }
   HWY_INLINE WordMask neighbours(std::size_t row, std::size_t from) const {
     const Words w;
-    const auto p = hn::Load(w, &b_vertices_->corner[0][from]),
-               q = hn::Load(w, &b_vertices_->corner[1][from]),
-               r = hn::Load(w, &b_vertices_->corner[2][from]);
+    const auto p = hn::Load(w, &b_vertices->corner[0][from]),
+               q = hn::Load(w, &b_vertices->corner[1][from]),
+               r = hn::Load(w, &b_vertices->corner[2][from]);
     const auto has = [&](std::size_t corner) {
-      const auto v = hn::Set(w, a_vertices_->corner[corner][row]);
+      const auto v = hn::Set(w, a_vertices->corner[corner][row]);
       return hn::Or(hn::Or(hn::Eq(p, v), hn::Eq(q, v)), hn::Eq(r, v));
     };
     return hn::Or(hn::Or(has(0), has(1)), has(2));
   }
   HWY_INLINE void put(std::size_t row, std::size_t from, WordMask mask, TrianglePair*& out) const {
     const Words w;
-    const auto one = hn::Set(w, a_.triangles[row]);
-    const auto others = hn::Compress(hn::Load(w, &b_.triangles[from]), mask);
+    const auto one = hn::Set(w, a.triangles[row]);
+    const auto others = hn::Compress(hn::Load(w, &b.triangles[from]), mask);
     hn::StoreInterleaved2(hn::Min(one, others), hn::Max(one, others), w, &out->a);
     out += hn::CountTrue(w, mask);
   }
-
-  const BlockLanes& a_;
-  const BlockLanes& b_;
-  const VertexBlock* a_vertices_;
-  const VertexBlock* b_vertices_;
-  const NormalLanes* a_normals_;
-  const NormalLanes* b_normals_;
 };
 
 }  // namespace
@@ -167,9 +143,12 @@ void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> ve
   const bool along = !normals.empty();
   for (const LanePair& pair : pairs) {
     const bool drops = pair.drops_neighbours;
-    Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
-               drops ? &vertices[pair.b] : nullptr, along ? &normals[pair.a] : nullptr,
-               along ? &normals[pair.b] : nullptr)
+    Comparison{lanes[pair.a],
+               lanes[pair.b],
+               drops ? &vertices[pair.a] : nullptr,
+               drops ? &vertices[pair.b] : nullptr,
+               along ? &normals[pair.a] : nullptr,
+               along ? &normals[pair.b] : nullptr}
         .write(next, next_perhaps);
     flush(certain, next, kFlush, out.pairs);
     flush(perhaps, next_perhaps, kFlush, out.perhaps);

@@ -9,16 +9,6 @@
 namespace farcull {
 namespace {
 
-// The block of each triangle.
-std::vector<std::uint32_t> blocks_by_triangle(const TriangleBlocks& blocks, std::size_t triangles) {
-  std::vector<std::uint32_t> out(triangles);
-  for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
-    const TriangleBlock& range = blocks.ranges[k];
-    for (std::uint32_t i = 0; i < range.count; ++i) out[blocks.triangle(range.first + i)] = k;
-  }
-  return out;
-}
-
 // Overlapping pairs of blocks with at least one moved block, each pair once. moved: per block,
 // whether it moved. moved_blocks: the blocks that moved, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
@@ -66,16 +56,6 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
   return out;
 }
 
-// The decision of a frame in which nothing moved: everything is as before.
-BlockDecision unmoved_decision(const FrameMemory& memory) {
-  BlockDecision out{.blocks = {}, .pairs = memory.object_pairs, .self = memory.self};
-  out.blocks.kept = memory.pairs;
-  out.blocks.overlaps = memory.overlaps;
-  out.blocks.meetings = memory.meetings;
-  out.blocks.triangles = memory.triangles;
-  return out;
-}
-
 // The decision for a frame in which some blocks moved. Recomputes the boxes, trees and pairs of
 // these blocks. Empty if many more pairs of blocks overlap than when the blocks were made, or if
 // decide_by_meetings() decides.
@@ -106,9 +86,8 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
   out.blocks.meetings = meetings.all.size();
   out.blocks.pairs =
       pairs_of_moved(*memory.trees, meetings.all, blocks, moved, moved_blocks, threads);
-  const auto has_moved = [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; };
   const auto renew = [&](std::vector<BlockPair>& all, const std::vector<BlockPair>& anew) {
-    std::erase_if(all, has_moved);
+    std::erase_if(all, [&](const BlockPair& pair) { return moved[pair.a] || moved[pair.b]; });
     all.insert(all.end(), anew.begin(), anew.end());
   };
   renew(memory.overlapping.between, out.blocks.pairs.between);
@@ -126,7 +105,11 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
 }  // namespace
 
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory) {
-  if (!memory.moved.any()) return unmoved_decision(memory);
+  if (!memory.moved.any()) {  // everything is as before
+    BlockDecision out = memory.counts;
+    out.blocks.kept = memory.pairs;
+    return out;
+  }
   if (memory.blocks) {
     if (auto decision = decision_of_moved(scene, threads, memory)) return *std::move(decision);
   }
@@ -141,7 +124,11 @@ BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemor
   }
   if (decision->tree == Reason::none && !decision->blocks.oriented) {
     memory.trees.emplace(blocks, blocks.objects);
-    memory.block_of = blocks_by_triangle(blocks, scene.triangles.size());
+    memory.block_of.resize(scene.triangles.size());
+    for (std::uint32_t k = 0; k < blocks.ranges.size(); ++k) {
+      const auto& [first, count] = blocks.ranges[k];
+      for (std::uint32_t i = 0; i < count; ++i) memory.block_of[blocks.triangle(first + i)] = k;
+    }
     memory.overlapping = decision->blocks.pairs;
     memory.normals = decision->blocks.normals;
     memory.usual = memory.overlapping.size();

@@ -27,8 +27,7 @@ struct FrameMemory {
   std::vector<ObjectPair> ignored;
   std::vector<TrianglePair> pairs;  // candidates from the blocks of the last frame
   bool oriented = false;  // pairs are from oriented boxes: usable only while nothing moves
-  /// Counts of the last frame, as in BlockMeetings and ObjectOverlaps.
-  std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
+  BlockDecision counts;   // of the last frame; only its numbers
 
   /// Blocks of the last frame, with all triangles of scattered objects in order. Null: not made
   /// yet, and the members below are empty. The plan of that frame shares them.

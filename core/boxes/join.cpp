@@ -1,9 +1,6 @@
 // Finds pairs with a tree of boxes, item by item, several items in parallel. The pairs of an item a
 // are those with b > a, so the result is sorted by a. If there are few owners, leaves are grouped
 // by owner, in order, and an item is only compared with leaves of later owners.
-//
-// Trees of blocks are searched block by block. Triangles whose boxes touch in floats are compared
-// again in doubles.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -13,7 +10,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -94,15 +90,6 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
 constexpr std::size_t kLeast = 4096;
 // About this many pairs are found at a time; they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
-
-// Makes room for `more` pairs, and for later ones as if the remaining items had as many pairs each.
-// Reserves 2 to 8 times what is needed, because each growth copies the list.
-void make_room(const OrderedPairs& join, std::size_t more, std::vector<TrianglePair>& pairs) {
-  const std::size_t needed = pairs.size() + more;
-  if (needed <= pairs.capacity()) return;
-  const double factor = std::clamp(1 / join.share(), 2.0, 8.0);
-  pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
-}
 
 // True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
 // cost a few more nodes, but overlaps inside an owner are never examined.
@@ -266,7 +253,12 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   std::vector<TrianglePair> pairs, some;
   while (!at_end() && pairs.size() <= most) {
     next(std::clamp<std::size_t>(most, 1, kPortion), some);
-    make_room(*this, some.size(), pairs);
+    // Makes room for later pairs too, as if the remaining items had as many each. Reserves 2 to 8
+    // times what is needed, because each growth copies the list.
+    const std::size_t needed = pairs.size() + some.size();
+    const double factor = std::clamp(1 / share(), 2.0, 8.0);
+    if (needed > pairs.capacity())
+      pairs.reserve(static_cast<std::size_t>(factor * static_cast<double>(needed)));
     pairs.insert(pairs.end(), some.begin(), some.end());
   }
   if (pairs.size() > most) pairs.resize(most + 1);
@@ -328,8 +320,6 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   }
 }
 
-// ---- blocks ----
-
 HWY_EXPORT(pair_blocks_here);
 
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
@@ -351,15 +341,33 @@ BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> region
 }
 
 void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed) {
-  std::vector<std::uint32_t> leaves;
+  std::vector<std::uint32_t> children;  // of one height whose boxes have changed; first leaves
   for (std::size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
     const auto behind = std::ranges::upper_bound(first_, changed[begin]);
     const auto object = static_cast<std::uint32_t>(behind - first_.begin() - 1);
-    leaves.clear();
-    for (; end < changed.size() && changed[end] < *behind; ++end)
-      leaves.push_back(changed[end] - first_[object]);
-    update_tree<float>([&](std::uint32_t k) { return blocks.bound(object, k); }, leaves, nodes_,
-                       trees_[object]);
+    BoxTree<float>& tree = trees_[object];
+    children.clear();
+    for (; end < changed.size() && changed[end] < *behind; ++end) {
+      const std::uint32_t leaf = changed[end] - first_[object];
+      nodes_[tree.first[0] + leaf / kWide].set(leaf % kWide, blocks.bound(object, leaf));
+      children.push_back(leaf);
+    }
+    for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
+      std::size_t found = 0;  // nodes above; `children` begins with their numbers
+      for (const std::uint32_t child : children) {
+        const std::uint32_t node = child / kWide;
+        if (found > 0 && children[found - 1] == node) continue;
+        children[found++] = node;
+        FloatBox all = kNowhere;
+        for (std::size_t k = 0; k < kWide; ++k) all.add(nodes_[tree.first[height] + node].get(k));
+        if (height + 1 < static_cast<std::size_t>(tree.levels)) {
+          nodes_[tree.first[height + 1] + node / kWide].set(node % kWide, all);
+        } else {
+          tree.box = all;
+        }
+      }
+      children.resize(found);
+    }
   }
 }
 
@@ -376,22 +384,9 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 
 namespace {
 
-constexpr std::uint32_t kNoLanes = 0xffffffff;
-
-// For each block, the index of its lanes, or kNoLanes.
-std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
-  std::vector<std::uint32_t> out(blocks.ranges.size(), kNoLanes);
-  for (std::uint32_t o = 0; o < blocks.objects.size(); ++o) {
-    if (!blocks.is_gathered(o)) continue;
-    const auto from = out.begin() + blocks.first[o];
-    std::iota(from, from + blocks.count(o), blocks.gathered[o].first);
-  }
-  return out;
-}
-
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;      // index for each block, or kNoLanes
+  std::vector<std::uint32_t> place;      // index for each block, or TriangleBlocks::kNoLanes
   UninitializedVector<BlockLanes> more;  // indexed after those in TriangleBlocks
 };
 
@@ -416,10 +411,10 @@ void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
 Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPairs& pairs,
                double clearance, unsigned threads) {
   Lanes out;
-  out.place = places_of(blocks);
+  out.place = blocks.lane_places();
   const auto given = static_cast<std::uint32_t>(blocks.lanes.size());
   std::vector<std::uint32_t> missing = blocks_in(pairs, blocks.ranges.size());
-  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != kNoLanes; });
+  std::erase_if(missing, [&](std::uint32_t block) { return out.place[block] != blocks.kNoLanes; });
   std::uint32_t next = given;
   for (const std::uint32_t block : missing) out.place[block] = next++;
   out.more.resize(missing.size());

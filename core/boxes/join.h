@@ -106,9 +106,6 @@ class OrderedPairs {
   std::vector<Part> parts_;
 };
 
-// Finds pairs of blocks whose boxes overlap, and in these the pairs of triangles whose boxes
-// overlap, on lanes (Google Highway): one box with as many others at once as a vector holds.
-
 /// The blocks of each object as a tree of boxes.
 class BlockTrees {
  public:

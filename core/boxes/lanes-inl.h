@@ -64,6 +64,18 @@ HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std
   return hn::And(hn::And(x, y), z);
 }
 
+/// Mask of those that overlap the box and do not only touch it.
+template <class Number>
+HWY_INLINE hn::Mask<Tag<Number>> overlapping_inside(const WideBoxes<Number>& block,
+                                                    std::size_t from, const OneBox<Number>& box) {
+  const auto along = [&](std::size_t axis, Vector<Number> lo, Vector<Number> hi) {
+    return hn::And(hn::Lt(column(block, axis, from), hi),
+                   hn::Gt(column(block, axis + 3, from), lo));
+  };
+  return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
+                 along(2, box.z0, box.z1));
+}
+
 /// The mask as bits, one for each lane.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {

@@ -1,10 +1,10 @@
-// Joins the boxes of objects, then those of the blocks of objects that meet. The number of overlaps
-// decides how pairs are found: blocks along the axes, oriented blocks, or a tree of all boxes.
+// Joins the boxes of objects, then those of the blocks of objects that meet.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/boxes/oriented.h"
@@ -15,14 +15,6 @@ namespace {
 bool collides_with_itself(const Object& object) { return object.self && object.triangle_count > 1; }
 
 constexpr std::size_t kMeetingsPerBlock = 8;
-
-// True if an object whose blocks are too small for floats can meet another one or itself.
-bool is_uneven(const TriangleBlocks& blocks, const ObjectOverlaps& meetings) {
-  if (blocks.stretched.empty()) return false;
-  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {
-           return std::max(blocks.stretch(meeting.a), blocks.stretch(meeting.b)) > kUneven;
-         });
-}
 
 // A part of a meeting: the blocks from .. to - 1 of its object a, and the pairs that they are in.
 struct MeetingPart {
@@ -50,34 +42,10 @@ std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
   return parts;
 }
 
-// Counts distinct blocks. start() begins a new count.
-class BlockCounter {
- public:
-  explicit BlockCounter(std::size_t blocks) : seen_(blocks, 0) {}
-  void start() { ++round_, count_ = 0; }
-  void add(std::uint32_t block) {
-    count_ += seen_[block] != round_;
-    seen_[block] = round_;
-  }
-  std::size_t count() const { return count_; }
-
- private:
-  std::vector<std::uint32_t> seen_;
-  std::uint32_t round_ = 0;
-  std::size_t count_ = 0;
-};
-
-// Appends at most `count` of the pairs, evenly spaced.
-void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
-                   std::vector<BlockPair>& to) {
-  count = std::min(count, from.size());
-  for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
-}
-
 // Moves the pairs of all parts to `out`. Returns false if a meeting has too many pairs.
 bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts,
              BlockMeetings& out) {
-  BlockCounter counter(out.of->ranges.size());
+  std::vector<std::uint32_t> seen(out.of->ranges.size(), 0);  // per block: 1 + its last meeting
   std::size_t between = 0, inside = 0;
   for (const MeetingPart& part : parts)
     (all[part.meeting].a == all[part.meeting].b ? inside : between) += part.pairs.size();
@@ -86,13 +54,14 @@ bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const std::uint32_t own = parts[begin].meeting;
     const ObjectOverlap& meeting = all[own];
-    std::size_t pairs = 0;
-    counter.start();
+    std::size_t pairs = 0, blocks = 0;
     for (; end < parts.size() && parts[end].meeting == own; ++end) {
       pairs += parts[end].pairs.size();
-      for (const BlockPair& pair : parts[end].pairs) counter.add(pair.a), counter.add(pair.b);
+      for (const BlockPair& pair : parts[end].pairs)
+        for (const std::uint32_t block : {pair.a, pair.b})
+          blocks += std::exchange(seen[block], own + 1) != own + 1;
     }
-    if (pairs > kPairsPerBlock * counter.count()) return false;
+    if (pairs > kPairsPerBlock * blocks) return false;
     std::vector<BlockPair>& to = meeting.a == meeting.b ? out.pairs.inside : out.pairs.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
@@ -230,7 +199,9 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
   BlockPairs some;
   for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
     const std::vector<BlockPair>& pairs = meetings.pairs.*list;
-    append_evenly(pairs, (kSampled * pairs.size() + all - 1) / all, some.*list);
+    const std::size_t count =
+        std::min((kSampled * pairs.size() + all - 1) / all, pairs.size());  // evenly spaced
+    for (std::size_t k = 0; k < count; ++k) (some.*list).push_back(pairs[pairs.size() * k / count]);
   }
   const std::uint64_t found =
       give_pairs_of_blocks(scene, meetings, some, clearance, false, 1, [](const auto&) {});
@@ -240,7 +211,12 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
 
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings) {
-  const bool uneven = is_uneven(blocks, meetings);
+  // Whether an object whose blocks are too small for floats can meet another one or itself.
+  const bool uneven =
+      !blocks.stretched.empty() &&
+      (meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {
+         return std::max(blocks.stretch(meeting.a), blocks.stretch(meeting.b)) > kUneven;
+       }));
   if (!uneven && !meetings.crowded) return std::nullopt;
   return BlockDecision{.blocks = {},
                        .tree = uneven ? Reason::join_uneven : Reason::join_crowded,

@@ -1,7 +1,5 @@
 // A block's frame comes from the second moments of its corners. Blocks are the leaves of a tree of
-// oriented boxes, which is searched for one block after the other. Only sums, products and
-// comparisons of floats decide, without fused operations, so every instruction set gives the same
-// pairs.
+// oriented boxes, which is searched for one block after the other. Floats decide as in compare.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>
@@ -108,22 +106,6 @@ HWY_INLINE void turn(const OrientedLanes& block, const Frame& frame, WideBoxes<f
   }
 }
 
-// Boxes of a block that overlap the box and do not only touch it, as bits.
-HWY_INLINE std::uint32_t inside_bits(const WideBoxes<float>& block, const OneBox& box) {
-  std::uint32_t out = 0;
-  for (std::size_t from = 0; from < kWide; from += kLanes) {
-    const auto along = [&](std::size_t axis, Vector lo, Vector hi) {
-      return hn::And(hn::Lt(boxes::column(block, axis, from), hi),
-                     hn::Gt(boxes::column(block, axis + 3, from), lo));
-    };
-    out |= boxes::bits_of(kNumbers,
-                          hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
-                                  along(2, box.z0, box.z1)))
-           << from;
-  }
-  return out;
-}
-
 }  // namespace
 
 void pair_oriented_here(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t b,
@@ -165,15 +147,17 @@ void compare_oriented_here(const OrientedBlocks& blocks, std::uint32_t a, std::u
     if (met == 0) continue;
     const OneBox box(one.boxes, row);
     met &= boxes::overlapping_bits(other.boxes, box);
-    std::uint32_t touching = met & ~inside_bits(other.boxes, box);
+    std::uint32_t inside = 0;
+    for (std::size_t from = 0; from < kWide; from += kLanes)
+      inside |= boxes::bits_of(kNumbers, boxes::overlapping_inside(other.boxes, from, box)) << from;
     const auto put = [&](std::uint32_t bits, std::vector<TrianglePair>& to) {
       while (bits != 0) {
         const std::uint32_t s = one.triangles[row], t = other.triangles[boxes::next_bit(bits)];
         to.push_back({std::min(s, t), std::max(s, t)});
       }
     };
-    put(met & ~touching, out.pairs);
-    put(touching, out.perhaps);
+    put(met & inside, out.pairs);
+    put(met & ~inside, out.perhaps);
   }
 }
 
@@ -269,14 +253,6 @@ OrientedBox box_along(const Frame& frame, std::span<const OrientedLanes> blocks)
   return out;
 }
 
-void set(WideOriented& wide, std::size_t lane, const OrientedBox& box) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    wide.middle[i][lane] = box.middle[i];
-    wide.half[i][lane] = box.half[i];
-    for (std::size_t k = 0; k < 3; ++k) wide.frame[i][k][lane] = box.frame[i][k];
-  }
-}
-
 // Fills in a block's corners, frame and boxes; returns the moments of its corners.
 Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangles,
                       const Vec3& origin, float margin, OrientedLanes& out) {
@@ -345,7 +321,14 @@ BoxTree<float> plant(std::span<const OrientedBox> leaves, std::span<const Orient
   std::size_t wide = 1;  // leaves below a box
   while (!boxes.empty() && (boxes.size() > 1 || out.levels == 0)) {
     const std::size_t n = (boxes.size() + kWide - 1) / kWide;
-    for (std::size_t k = 0; k < boxes.size(); ++k) set(nodes[at + k / kWide], k % kWide, boxes[k]);
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      WideOriented& node = nodes[at + k / kWide];
+      for (std::size_t i = 0; i < 3; ++i) {
+        node.middle[i][k % kWide] = boxes[k].middle[i];
+        node.half[i][k % kWide] = boxes[k].half[i];
+        for (std::size_t j = 0; j < 3; ++j) node.frame[i][j][k % kWide] = boxes[k].frame[i][j];
+      }
+    }
     out.first[static_cast<std::size_t>(out.levels++)] = at;
     at += n;
     wide *= kWide;
@@ -370,17 +353,10 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   const auto out = std::make_shared<OrientedBlocks>();
   TriangleBlocks& blocks = out->blocks;
   const std::size_t objects = scene.objects.size();
-  blocks.first.resize(objects + 1, 0);
+  divide(scene, blocks);
   blocks.gathered.resize(objects);
   blocks.order.resize(scene.triangles.size());
   std::iota(blocks.order.begin(), blocks.order.end(), 0u);
-  for (std::size_t o = 0; o < objects; ++o) {
-    const Object& object = scene.objects[o];
-    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
-      blocks.ranges.push_back(
-          {object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
-    blocks.first[o + 1] = static_cast<std::uint32_t>(blocks.ranges.size());
-  }
   blocks.boxes.resize(blocks.ranges.size());
   std::vector<std::uint32_t> inside(objects, 0);
   blocks.objects.assign(objects, Box::empty());
@@ -449,12 +425,7 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
 std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take) {
-  std::vector<std::uint32_t> place(blocks.blocks.ranges.size(), 0);
-  for (std::size_t o = 0; o < blocks.blocks.gathered.size(); ++o) {
-    const auto& gathered = blocks.blocks.gathered[o];
-    for (std::uint32_t k = 0; k < gathered.count; ++k)
-      place[blocks.blocks.first[o] + k] = gathered.first + k;
-  }
+  const std::vector<std::uint32_t> place = blocks.blocks.lane_places();
   // Erases neighbours from index `from` on. Earlier pairs may be of different objects; these count
   // even if they share a vertex index.
   const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {

@@ -15,7 +15,6 @@
 namespace farcull {
 namespace {
 
-// Lists the vertices of each block.
 void list_vertices(const Scene& scene, RigidBlocks& out) {
   out.first_vertex.assign(1, 0);
   for (const TriangleBlock& range : out.of->ranges) {
@@ -56,7 +55,15 @@ class Walk {
     }
     for (int below = levels - 1; below >= 0; --below) {
       const std::vector<std::uint32_t> nodes = blocks_in(out, blocks_.ranges.size());
-      move_children(nodes, below);
+      // Sets the lanes of each node to its children, which have the height `below`.
+      lanes_.resize(nodes.size());
+      for_chunks(nodes.size(), chunks_for(nodes.size(), 64, threads_),
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (std::size_t k = begin; k < end; ++k) {
+                     place_[nodes[k]] = static_cast<std::uint32_t>(k);
+                     move_children_of(nodes[k], below, lanes_[k]);
+                   }
+                 });
       const std::size_t most = kPairsPerBlock * kWide * nodes.size();
       out.between = overlapping_children(out.between, most);
       if (out.between.size() > most) return std::nullopt;
@@ -65,18 +72,7 @@ class Walk {
   }
 
  private:
-  // Sets the lanes of each node to its children, which have the height `below`. A root of at most
-  // this height is its own only child.
-  void move_children(std::span<const std::uint32_t> nodes, int below) {
-    lanes_.resize(nodes.size());
-    for_chunks(nodes.size(), chunks_for(nodes.size(), 64, threads_),
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                 for (std::size_t k = begin; k < end; ++k) {
-                   place_[nodes[k]] = static_cast<std::uint32_t>(k);
-                   move_children_of(nodes[k], below, lanes_[k]);
-                 }
-               });
-  }
+  // A root of at most the height `below` is its own only child.
   void move_children_of(std::uint32_t node, int below, BlockLanes& out) const {
     const std::uint32_t object = rigid_.object_of[node], first = blocks_.first[object];
     const BoxTree<double>& tree = rigid_.trees[object];
@@ -135,12 +131,20 @@ class Walk {
   UninitializedVector<BlockLanes> lanes_;  // per such node: its children
 };
 
-// The middle of the places where objects meet: floats relative to it are finest there.
-Vec3 middle_of_meetings(const TriangleBlocks& blocks, std::span<const ObjectOverlap> meetings) {
-  Box all = Box::empty();
-  for (const auto& [a, b] : meetings) all.add(intersection(blocks.objects[a], blocks.objects[b]));
-  if (all.is_empty()) return Vec3::Zero();
-  return 0.5 * all.lo + 0.5 * all.hi;
+constexpr double kMost = std::numeric_limits<double>::max() / 4;
+
+// True if no number that occurs while a point of the box is moved is above kMost, and for an empty
+// box.
+bool keeps_finite(const RigidMotion& motion, const Box& box) {
+  if (box.is_empty()) return true;
+  const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double sum = std::abs(motion.t[axis]);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += std::abs(motion.r[3 * axis + k]) * most[static_cast<Eigen::Index>(k)];
+    if (!(sum <= kMost)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -156,19 +160,6 @@ Box moved(const RigidMotion& motion, const Box& box) {
     out.hi[axis] = moved_coordinate(row, high(0), high(1), high(2), t);
   }
   return out;
-}
-
-bool keeps_finite(const RigidMotion& motion, const Box& box) {
-  constexpr double kMost = std::numeric_limits<double>::max() / 4;
-  if (box.is_empty()) return true;
-  const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double sum = std::abs(motion.t[axis]);
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += std::abs(motion.r[3 * axis + k]) * most[static_cast<Eigen::Index>(k)];
-    if (!(sum <= kMost)) return false;
-  }
-  return true;
 }
 
 RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads) {
@@ -211,7 +202,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
                                                std::span<const ObjectPair> ignored,
                                                unsigned threads, RigidBlocks& rigid) {
   const double half = half_of(clearance);
-  if (has_self(scene) || half > std::numeric_limits<double>::max() / 4) return std::nullopt;
+  if (has_self(scene) || half > kMost) return std::nullopt;
   if (rigid.of.use_count() > 1)  // another decision still uses these blocks
     rigid.of = std::make_shared<TriangleBlocks>(*rigid.of);
   TriangleBlocks& blocks = *rigid.of;
@@ -222,7 +213,12 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   }
   const ObjectOverlaps meetings = find_meetings(scene, blocks, ignored);
   if (meetings.crowded) return std::nullopt;
-  blocks.origin = middle_of_meetings(blocks, meetings.all);
+  // The middle of the places where objects meet: floats relative to it are finest there.
+  Box all = Box::empty();
+  for (const auto& [a, b] : meetings.all)
+    all.add(intersection(blocks.objects[a], blocks.objects[b]));
+  blocks.origin = Vec3::Zero();
+  if (!all.is_empty()) blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   auto pairs = Walk(rigid, motions, half, threads).pairs(meetings.all);
   if (!pairs) return std::nullopt;
   BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};

@@ -40,9 +40,6 @@ inline Vec3 moved(const RigidMotion& motion, const Vec3& p) {
 /// A closed box that contains moved(motion, p) for each point p of the box. Preconditions: the box
 /// is not empty, and the motion keeps it finite.
 Box moved(const RigidMotion& motion, const Box& box);
-/// True if no number that occurs while a point of the box is moved is above a quarter of the
-/// largest double, and for an empty box.
-bool keeps_finite(const RigidMotion& motion, const Box& box);
 
 /// The blocks of the objects of a scene, and trees over them, each object in its own frame.
 struct RigidBlocks {

@@ -60,11 +60,10 @@ void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, Fra
   // While nothing moves the plan has no blocks, and the pairs are those of the frame before.
   if (decision.blocks.of) memory.oriented = decision.blocks.oriented != nullptr;
   memory.pairs = plan.by_tree() ? std::vector<TrianglePair>() : found;
-  memory.overlaps = decision.blocks.overlaps;
-  memory.meetings = decision.blocks.meetings;
-  memory.triangles = decision.blocks.triangles;
-  memory.object_pairs = decision.pairs;
-  memory.self = decision.self;
+  memory.counts = {.blocks = {}, .pairs = decision.pairs, .self = decision.self};
+  memory.counts.blocks.overlaps = decision.blocks.overlaps;
+  memory.counts.blocks.meetings = decision.blocks.meetings;
+  memory.counts.blocks.triangles = decision.blocks.triangles;
 }
 
 }  // namespace

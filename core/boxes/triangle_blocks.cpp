@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -18,16 +16,12 @@ namespace {
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
 // True if the boxes of an object's blocks are much longer than boxes of compact parts of a surface
-// would be. mean: their mean length.
-bool are_scattered(double mean, std::uint32_t blocks, const Box& object) {
-  return mean * std::sqrt(blocks) > kScattered * length(object);
-}
-
+// would be.
 bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
   const std::uint32_t first = blocks.first[object], count = blocks.first[object + 1] - first;
   double sum = 0;
   for (std::uint32_t k = 0; k < count; ++k) sum += length(blocks.boxes[first + k]);
-  return count > 0 && are_scattered(sum / count, count, blocks.objects[object]);
+  return count > 0 && sum / count * std::sqrt(count) > kScattered * length(blocks.objects[object]);
 }
 
 // Objects with fewer triangles are not sampled.
@@ -72,12 +66,8 @@ void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
 // all threads; else in parallel, each with one thread.
 template <class Work>
 void for_each_of(std::size_t count, unsigned threads, const Work& work) {
-  const std::size_t cores = chunks_for(SIZE_MAX, 1, threads);
-  const std::size_t chunks = count < cores ? 1 : cores;
-  std::atomic<std::size_t> next = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    for (std::size_t k = next++; k < count; k = next++) work(k, chunks > 1 ? 1 : threads);
-  });
+  const bool few = count < chunks_for(SIZE_MAX, 1, threads);
+  for_each_shared(count, few ? 1 : threads, [&](std::size_t k) { work(k, few ? threads : 1); });
 }
 
 // The middle of a box; finite even if the box is not.
@@ -89,16 +79,6 @@ Vec3 middle(const Box& box) {
 
 Box block_box(const Scene& scene, const TriangleBlock& range, double half) {
   return grow(box_of(scene, range.first, range.first + range.count), half);
-}
-
-// Calls work(block) for each block of an object.
-template <class Work>
-void for_blocks_of(const TriangleBlocks& blocks, std::uint32_t object, unsigned threads,
-                   const Work& work) {
-  const std::uint32_t first = blocks.first[object], n = blocks.first[object + 1] - first;
-  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = first + begin; k < first + end; ++k) work(k);
-  });
 }
 
 // Sets the box of an object to the union of the boxes of its blocks.
@@ -255,23 +235,21 @@ std::uint32_t order_stretched(const Scene& scene, const Object& object,
   return object.triangle_count;
 }
 
-// Whether floats relative to `from` are nearly as fine as those relative to the middle of a box.
-bool is_near(const Vec3& from, const Box& box) {
-  return (from - middle(box)).cwiseAbs().maxCoeff() <= 4 * (box.hi - box.lo).maxCoeff();
-}
-
 }  // namespace
+
+void divide(const Scene& scene, TriangleBlocks& out) {
+  out.first.assign(1, 0);
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
+      out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
+    out.first.push_back(static_cast<std::uint32_t>(out.ranges.size()));
+  }
+}
 
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads) {
   TriangleBlocks out;
   const auto objects = static_cast<std::uint32_t>(scene.objects.size());
-  out.first.resize(objects + 1, 0);
-  for (std::size_t o = 0; o < objects; ++o) {
-    const Object& object = scene.objects[o];
-    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
-      out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
-    out.first[o + 1] = static_cast<std::uint32_t>(out.ranges.size());
-  }
+  divide(scene, out);
   const double half = half_of(clearance);
   const std::size_t n = out.ranges.size();
   out.boxes.resize(n);
@@ -369,10 +347,12 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
   };
   const auto update = [&](std::span<const std::uint8_t> which) {
     for_each_of(objects, threads, [&](std::size_t o, unsigned own_threads) {
-      const auto object = static_cast<std::uint32_t>(o);
-      for_blocks_of(blocks, object, own_threads, [&](std::size_t k) {
-        if (which.empty() || which[k]) update_block(object, k);
-      });
+      const std::uint32_t first = blocks.first[o], n = blocks.first[o + 1] - first;
+      for_chunks(n, chunks_for(n, 256, own_threads),
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (std::size_t k = first + begin; k < first + end; ++k)
+                     if (which.empty() || which[k]) update_block(static_cast<std::uint32_t>(o), k);
+                 });
     });
   };
   update(moved);
@@ -382,7 +362,9 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
     all.add(blocks.objects[o]);
   }
   mark_stretched(scene, half, blocks);
-  if (is_near(blocks.origin, all)) return;
+  // Floats relative to the old origin may be nearly as fine as those relative to the new middle.
+  if ((blocks.origin - middle(all)).cwiseAbs().maxCoeff() <= 4 * (all.hi - all.lo).maxCoeff())
+    return;
   blocks.origin = middle(all);
   if (!blocks.lanes.empty()) update({});
 }

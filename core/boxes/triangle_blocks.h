@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,16 @@ struct TriangleBlocks {
     return is_gathered(object) ? lanes[gathered[object].first + k].bound
                                : relative(boxes[first[object] + k], origin);
   }
+  /// Per block, the index of its lanes in `lanes`, or kNoLanes.
+  std::vector<std::uint32_t> lane_places() const {
+    std::vector<std::uint32_t> out(ranges.size(), kNoLanes);
+    for (std::uint32_t o = 0; o < objects.size(); ++o) {
+      if (!is_gathered(o)) continue;
+      std::iota(out.begin() + first[o], out.begin() + first[o] + count(o), gathered[o].first);
+    }
+    return out;
+  }
+  static constexpr std::uint32_t kNoLanes = UINT32_MAX;
   /// The triangle at a position, TriangleBlock::first + k.
   std::uint32_t triangle(std::uint32_t position) const {
     return order.empty() ? position : order[position];
@@ -68,6 +79,8 @@ constexpr float kStretched = 8;
 /// 2^-24 of the object's box.
 constexpr float kUneven = 0x1p24f / (256 * 64);
 
+/// Sets the ranges of the blocks, whose list must be empty, and the first block of each object.
+void divide(const Scene& scene, TriangleBlocks& blocks);
 /// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
 /// are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);

@@ -52,7 +52,7 @@ std::vector<std::uint8_t> device_seen(const GlContext&, const SolidProgram&,
 }
 
 Image draw_picture(const GlContext&, const Scene&, const Window&, std::span<const PictureTriangle>,
-                   const PictureSettings&) {
+                   int) {
   refuse();
 }
 

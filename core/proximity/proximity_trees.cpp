@@ -1,10 +1,8 @@
 // ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
 // Searches run in parallel; a long one is divided. For the nearest objects of an object, it is
 // compared with the others in the order of the gaps of their parts, until a gap is above the k-th
-// least upper bound so far. If many parts overlap, each small object is first compared with all
-// triangles at once, and then only with the few objects that this leaves. For all pairs within a
-// distance, each object is compared with those that follow it. The bound of these searches is the
-// given limit and does not shrink. They pause often, so that the pairs of all can be counted.
+// least upper bound so far. For all pairs within a distance, each object is compared with those
+// that follow it.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -145,7 +143,6 @@ struct Crowd {
   std::vector<std::uint32_t> owner;
 };
 
-// Memory of a thread that looks for nearest objects.
 struct NearestMemory {
   SearchMemory of_two;
   std::optional<SearchMemory> of_all;  // made at the first search with all triangles
@@ -244,49 +241,6 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
   return out;
 }
 
-// Does ProximityTrees::nearest_objects(). limit: scaled; hints: triangles of the objects that they
-// name, sorted by objects, for two objects at most one; all: as in found_by(). Adds to counts.
-std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
-                                       std::span<const NearHint> hints, bool all, unsigned threads,
-                                       ProximityCounts& counts) {
-  if (k == 0) return {};
-  const std::size_t objects = trees.scene().objects.size();
-  std::vector<std::vector<NearHint>> hints_of(objects);
-  for (const NearHint& hint : hints) {
-    hints_of[hint.objects.a].push_back(hint);
-    hints_of[hint.objects.b].push_back(hint);
-  }
-  std::vector<std::vector<Found>> found(objects);
-  std::vector<ProximityCounts> parts(objects);
-  std::unique_ptr<Crowd> crowd;
-  if (Crowd::is(trees)) crowd = std::make_unique<Crowd>(trees.scene(), threads);
-  for_each_with_memory<NearestMemory>(objects, threads, [&](std::size_t o, NearestMemory& memory) {
-    const auto object = static_cast<std::uint32_t>(o);
-    if (trees.tree(object).levels == 0) return;
-    const Crowd* const asked = Crowd::is_small(trees, object) ? crowd.get() : nullptr;
-    found[o] = found_by(trees, asked, object, k, limit, hints_of[o], all, memory, parts[o]);
-  });
-  std::vector<Found> founds;
-  for (std::size_t o = 0; o < objects; ++o) {
-    counts.add_work(parts[o]);
-    std::ranges::move(found[o], std::back_inserter(founds));
-  }
-  // Two objects may each have found the other; then the answer with the larger limit is kept. An
-  // answer has all nearest pairs if their distance is within its limit. That holds for at least one
-  // of the two answers, so it holds for the one with the larger limit.
-  std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
-    if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
-    return x.limit > y.limit;
-  });
-  std::vector<NearPairs> out;
-  for (Found& f : founds) {
-    if (!out.empty() && out.back().objects == f.near.objects) continue;
-    counts.kept += f.near.pairs.size();
-    out.push_back(std::move(f.near));
-  }
-  return out;
-}
-
 // Pairs of leaves examined between two counts: at most 16,384 pairs of triangles.
 constexpr std::size_t kBetweenCounts = 64;
 
@@ -318,71 +272,20 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.add_work(search.counts);
 }
 
-// Does ProximityTrees::pairs_within(). limit: scaled. Adds to count and counts.
-std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, Count& count,
-                                       unsigned threads, ProximityCounts& counts) {
-  const Scene& scene = trees.scene();
-  const std::size_t objects = scene.objects.size();
-  std::vector<std::vector<TrianglePair>> found(objects);
-  std::vector<ProximityCounts> parts(objects);
-  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
-    const auto object = static_cast<std::uint32_t>(o);
-    if (trees.tree(object).levels == 0) return;
-    Approach approach(trees, object);
-    std::uint32_t other = 0;
-    while (approach.next(near::square_limit(limit), other)) {
-      if (other < object || (other == object && !scene.objects[o].self)) continue;
-      add_pairs(trees, {object, other}, limit, count, memory, parts[o], found[o]);
-    }
-    std::ranges::sort(found[o]);
-  });
-  std::vector<TrianglePair> out;
-  for (std::size_t o = 0; o < objects; ++o) {
-    out.insert(out.end(), found[o].begin(), found[o].end());
-    found[o] = {};
-    counts.add_work(parts[o]);
-    counts.kept += parts[o].kept;
-  }
-  return out;
-}
-
-// Does ProximityTrees::objects_within(). limit: scaled.
-std::vector<ObjectPair> objects_within(const SceneTrees& trees, double limit, std::size_t most,
-                                       unsigned threads) {
-  const Scene& scene = trees.scene();
-  Count count(most, too_many_within(most, "objects"));
-  std::vector<std::vector<ObjectPair>> found(scene.objects.size());
-  for_each_shared(found.size(), threads, [&](std::size_t o) {
-    const auto object = static_cast<std::uint32_t>(o);
-    Approach approach(trees, object);
-    std::uint32_t other = 0;
-    while (approach.next(near::square_limit(limit), other)) {
-      if (other < object || (other == object && !scene.objects[o].self)) continue;
-      count.add(1);
-      found[o].push_back({object, other});
-    }
-    std::ranges::sort(found[o]);
-  });
-  std::vector<ObjectPair> out;
-  for (const std::vector<ObjectPair>& pairs : found)
-    out.insert(out.end(), pairs.begin(), pairs.end());
-  return out;
-}
-
-void check(const Scene& scene, std::span<const ObjectPair> questions, double within,
-           std::size_t hints) {
-  if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
-  if (hints != 0 && hints != questions.size())
-    throw std::logic_error("near_pairs: as many hints as questions, or none");
-  for (const ObjectPair& q : questions) {
-    if (q.a > q.b || q.b >= scene.objects.size())
-      throw std::logic_error("near_pairs: no such pair of objects");
+// Calls visit(other) for each later object whose parts are at most `limit` (scaled) from parts of
+// the object, and for the object itself if it is `self`.
+template <class Visit>
+void for_later_within(const SceneTrees& trees, std::uint32_t object, double limit,
+                      const Visit& visit) {
+  Approach approach(trees, object);
+  std::uint32_t other = 0;
+  while (approach.next(near::square_limit(limit), other)) {
+    if (other > object || (other == object && trees.scene().objects[object].self)) visit(other);
   }
 }
 
 bool has(const Object& object, std::uint32_t triangle) {
-  return triangle >= object.first_triangle &&
-         triangle - object.first_triangle < object.triangle_count;
+  return triangle - object.first_triangle < object.triangle_count;
 }
 // Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
 bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
@@ -425,7 +328,13 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
     std::span<const ObjectPair> questions, double within,
     std::span<const std::optional<TrianglePair>> hints, const Progress& progress) const {
   const SceneTrees& trees = state_->trees;
-  check(trees.scene(), questions, within, hints.size());
+  if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
+  if (!hints.empty() && hints.size() != questions.size())
+    throw std::logic_error("near_pairs: as many hints as questions, or none");
+  for (const ObjectPair& q : questions) {
+    if (q.a > q.b || q.b >= trees.scene().objects.size())
+      throw std::logic_error("near_pairs: no such pair of objects");
+  }
   if (progress) progress(StageKind::near);
   const double limit = scaled_limit(trees, within);
   std::vector<NearPairs> out(questions.size());
@@ -460,6 +369,7 @@ std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double with
                                                       const Progress& progress) const {
   if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
   if (progress) progress(StageKind::near);
+  if (k == 0) return {};
   const Scene& scene = trees.scene();
   std::vector<NearHint> good;
   for (const NearHint& hint : hints) {
@@ -469,9 +379,42 @@ std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double with
   }
   std::ranges::stable_sort(good, {}, &NearHint::objects);
   good.erase(std::ranges::unique(good, {}, &NearHint::objects).begin(), good.end());
+  const std::size_t objects = scene.objects.size();
+  std::vector<std::vector<NearHint>> hints_of(objects);
+  for (const NearHint& hint : good) {
+    hints_of[hint.objects.a].push_back(hint);
+    hints_of[hint.objects.b].push_back(hint);
+  }
+  const double limit = scaled_limit(trees, within);
+  std::vector<std::vector<Found>> found(objects);
+  std::vector<ProximityCounts> parts(objects);
+  std::unique_ptr<Crowd> crowd;
+  if (Crowd::is(trees)) crowd = std::make_unique<Crowd>(scene, threads);
+  for_each_with_memory<NearestMemory>(objects, threads, [&](std::size_t o, NearestMemory& memory) {
+    const auto object = static_cast<std::uint32_t>(o);
+    if (trees.tree(object).levels == 0) return;
+    const Crowd* const asked = Crowd::is_small(trees, object) ? crowd.get() : nullptr;
+    found[o] = found_by(trees, asked, object, k, limit, hints_of[o], all, memory, parts[o]);
+  });
+  std::vector<Found> founds;
   ProximityCounts counts;
-  std::vector<NearPairs> out =
-      farcull::nearest_objects(trees, k, scaled_limit(trees, within), good, all, threads, counts);
+  for (std::size_t o = 0; o < objects; ++o) {
+    counts.add_work(parts[o]);
+    std::ranges::move(found[o], std::back_inserter(founds));
+  }
+  // Two objects may each have found the other; then the answer with the larger limit is kept. An
+  // answer has all nearest pairs if their distance is within its limit. That holds for at least
+  // one of the two answers, so it holds for the one with the larger limit.
+  std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
+    if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
+    return x.limit > y.limit;
+  });
+  std::vector<NearPairs> out;
+  for (Found& f : founds) {
+    if (!out.empty() && out.back().objects == f.near.objects) continue;
+    counts.kept += f.near.pairs.size();
+    out.push_back(std::move(f.near));
+  }
   add(counts);
   return out;
 }
@@ -489,8 +432,22 @@ std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double wit
 
 std::vector<ObjectPair> ProximityTrees::objects_within(double within, std::size_t most) const {
   if (!(within >= 0)) throw std::logic_error("objects_within: within is not a distance");
-  return farcull::objects_within(state_->trees, scaled_limit(state_->trees, within), most,
-                                 state_->threads);
+  const SceneTrees& trees = state_->trees;
+  const double limit = scaled_limit(trees, within);
+  Count count(most, too_many_within(most, "objects"));
+  std::vector<std::vector<ObjectPair>> found(trees.scene().objects.size());
+  for_each_shared(found.size(), state_->threads, [&](std::size_t o) {
+    const auto object = static_cast<std::uint32_t>(o);
+    for_later_within(trees, object, limit, [&](std::uint32_t other) {
+      count.add(1);
+      found[o].push_back({object, other});
+    });
+    std::ranges::sort(found[o]);
+  });
+  std::vector<ObjectPair> out;
+  for (const std::vector<ObjectPair>& pairs : found)
+    out.insert(out.end(), pairs.begin(), pairs.end());
+  return out;
 }
 
 std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_t most,
@@ -499,11 +456,27 @@ std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_
   if (!(within >= 0) || !std::isfinite(within))
     throw std::logic_error("pairs_within: within is not a distance");
   if (progress) progress(StageKind::near);
-  ProximityCounts counts;
+  const SceneTrees& trees = state_->trees;
+  const double limit = scaled_limit(trees, within);
   Count count(most + spare, too_many_within(most, "triangles"));
-  std::vector<TrianglePair> out = farcull::pairs_within(
-      state_->trees, scaled_limit(state_->trees, within), count, state_->threads, counts);
-  state_->add(counts);
+  const std::size_t objects = trees.scene().objects.size();
+  std::vector<std::vector<TrianglePair>> found(objects);
+  std::vector<ProximityCounts> parts(objects);
+  for_each_with_memory<SearchMemory>(
+      objects, state_->threads, [&](std::size_t o, SearchMemory& memory) {
+        const auto object = static_cast<std::uint32_t>(o);
+        if (trees.tree(object).levels == 0) return;
+        for_later_within(trees, object, limit, [&](std::uint32_t other) {
+          add_pairs(trees, {object, other}, limit, count, memory, parts[o], found[o]);
+        });
+        std::ranges::sort(found[o]);
+      });
+  std::vector<TrianglePair> out;
+  for (std::size_t o = 0; o < objects; ++o) {
+    out.insert(out.end(), found[o].begin(), found[o].end());
+    found[o] = {};
+    state_->add(parts[o]);
+  }
   return out;
 }
 

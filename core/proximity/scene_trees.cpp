@@ -1,7 +1,6 @@
 // Makes the trees from blocks of core/boxes/triangle_blocks.h, sorted so that sixteen consecutive
-// blocks lie together, too. Divides long searches into a fixed number of parts. The parts begin
-// with the same bound and share no results. After a while they are joined, and the rest is divided
-// again.
+// blocks lie together, too. Divides long searches into a fixed number of parts, which are joined
+// after a while; the rest is divided again.
 #include "core/proximity/scene_trees.h"
 
 #include <string>
@@ -14,18 +13,14 @@ namespace farcull {
 
 SceneTrees::SceneTrees(const Scene& scene, unsigned threads, Settle settle)
     : scene_(&scene), settle_(std::move(settle)), of_(make_ordered_blocks(scene, 0, threads)) {
-  choose_scale();
-  make_trees(threads);
-  make_object_tree();
-}
-
-void SceneTrees::choose_scale() {
   double most = 0;
   for (const Box& box : of_.objects) {
     if (box.is_empty()) continue;
     most = std::max({most, box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()});
   }
   if (most > 0) scale_ = std::ldexp(1.0, std::clamp(-std::ilogb(most), -1022, 1000));
+  make_trees(threads);
+  make_object_tree();
 }
 
 void SceneTrees::make_trees(unsigned threads) {
@@ -77,7 +72,6 @@ void SceneTrees::find_least(std::uint32_t object) {
 
 namespace {
 
-// The most parts of an object.
 constexpr std::size_t kMostParts = 64;
 
 // A node of an object's tree; or, with height -1, triangle k of a leaf.
@@ -226,8 +220,6 @@ bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   }
   return false;
 }
-
-// ---- searches in parallel ----
 
 void Others::add(const TrianglePair& pair, double bound) {
   if (bound > upper()) return;

@@ -134,7 +134,6 @@ class SceneTrees {
   std::uint32_t object(std::uint32_t leaf) const { return object_of_leaf_[leaf]; }
 
  private:
-  void choose_scale();
   void make_trees(unsigned threads);
   void find_least(std::uint32_t object);
   void add_parts(std::uint32_t object);
@@ -157,7 +156,6 @@ class SceneTrees {
 /// The corners of sixteen scaled triangles, in columns: column 3 * corner + axis.
 using CornerColumns = std::array<std::array<double, kWide>, 9>;
 
-/// Pairs of scaled triangles.
 struct alignas(64) PairBatch {
   CornerColumns a{}, b{};
   std::array<TrianglePair, kWide> pairs{};
@@ -171,7 +169,6 @@ struct alignas(64) BatchBounds {
   std::array<std::array<double, kWide>, 3> direction;
 };
 
-/// The triangles of a leaf, ready for lanes.
 struct alignas(64) BlockCorners {
   CornerColumns corner;
   WideBoxes<double> boxes;  // of the triangles
@@ -239,7 +236,6 @@ struct Others {
     const Object& own = scene.objects[object];
     return triangle - own.first_triangle < own.triangle_count;
   }
-  bool asks_about(std::uint32_t triangle) const { return triangle < end && !is_own(triangle); }
   std::uint32_t other_of(const TrianglePair& pair) const {
     return owner[is_own(pair.a) ? pair.b : pair.a];
   }
@@ -250,7 +246,6 @@ struct Others {
   void add(const TrianglePair& pair, double upper);
 };
 
-/// A search that has begun.
 struct Search {
   ObjectPair objects;
   Others* others = nullptr;  // of objects.a; if set, objects.b is the object of Others::all
@@ -276,13 +271,10 @@ struct Search {
   void filter();
 };
 
-/// Memory that a thread uses again in all its searches.
-class SearchMemory {
- public:
+/// Memory that a thread uses again in all its searches in one scene.
+struct SearchMemory {
   static constexpr std::uint32_t kLeaves = 64;
   SearchMemory() : a(kLeaves), b(kLeaves) {}
-  /// To be called before searches in another scene.
-  void forget() { *this = SearchMemory(); }
 
   std::vector<BlockCorners> a, b;  // leaves of the first and the second object, at leaf % kLeaves
   std::uint64_t directions = 0;    // the number of directions used so far

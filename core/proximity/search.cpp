@@ -77,7 +77,6 @@ class Searcher {
   }
 
  private:
-  // The tree of an object.
   struct Side {
     const SceneTrees& trees;
     std::uint32_t object;
@@ -194,13 +193,13 @@ class Searcher {
         out.push_back(
             {squares[k], a ? child(at.a, k) : at.a, a ? at.b : child(at.b, k), a_height, b_height});
       }
-      count_boxes(1);
+      search_.counts.box_pairs += kWide;
       return;
     }
     const WideBoxes<double>& own = a_.children(at.a_height, at.a);
     const WideBoxes<double>& other = b_.children(at.b_height, at.b);
     std::uint32_t columns = near_boxes(other, a_.box_of(at.a_height, at.a), limit, squares);
-    count_boxes(1 + static_cast<std::size_t>(std::popcount(columns)));
+    search_.counts.box_pairs += kWide * (1 + static_cast<std::size_t>(std::popcount(columns)));
     while (columns != 0) {
       const std::size_t j = next_bit(columns);
       std::uint32_t bits = near_boxes(own, OneBox(other, j), limit, squares);
@@ -214,7 +213,6 @@ class Searcher {
   static std::uint32_t child(std::uint32_t node, std::size_t k) {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
-  void count_boxes(std::size_t blocks) { search_.counts.box_pairs += kWide * blocks; }
 
   // Puts the pairs of triangles of two leaves that may be near into the batch.
   HWY_INLINE void compare_leaves(const NodePair& at) {
@@ -234,7 +232,7 @@ class Searcher {
     std::uint32_t rows = near_boxes(a.boxes, b_.box_of(0, at.b), square_limit_, squares);
     const std::uint32_t columns =
         asked & near_boxes(b.boxes, a_.box_of(0, at.a), square_limit_, squares);
-    count_boxes(2 + static_cast<std::size_t>(std::popcount(rows)));
+    search_.counts.box_pairs += kWide * (2 + static_cast<std::size_t>(std::popcount(rows)));
     const bool same = self_ && at.a == at.b;
     std::array<std::uint32_t, kWide> near{};  // per row, bits of the columns
     for (; rows != 0; rows &= rows - 1) {
@@ -256,8 +254,10 @@ class Searcher {
   // In a search with Others: bits of the triangles of a leaf that it asks about.
   std::uint32_t asked_of(const BlockCorners& leaf) const {
     std::uint32_t out = 0;
-    for (std::uint32_t k = 0; k < leaf.count; ++k)
-      out |= std::uint32_t{others_->asks_about(leaf.triangle[k])} << k;
+    for (std::uint32_t k = 0; k < leaf.count; ++k) {
+      const std::uint32_t t = leaf.triangle[k];
+      out |= std::uint32_t{t < others_->end && !others_->is_own(t)} << k;
+    }
     return out;
   }
 
@@ -300,6 +300,20 @@ class Searcher {
     return bits;
   }
 
+  // The least and the largest coordinate along d of each triangle of a leaf, from lane `from` on.
+  struct Ends {
+    Number least, most;
+  };
+  HWY_INLINE Ends ends_along(const Vec3& d, const BlockCorners& leaf, std::size_t from) const {
+    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
+    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
+    const auto place = [&](std::size_t corner) {
+      return dot(LaneTriangle::load(leaf.corner, corner, from) - origin, direction);
+    };
+    const Number p = place(0), q = place(1), r = place(2);
+    return {hn::Min(hn::Min(p, q), r), hn::Max(hn::Max(p, q), r)};
+  }
+
   // Bits of the triangles of a leaf that along d are no farther from a triangle than the bound.
   HWY_INLINE std::uint32_t near_along(const Vec3& d, const std::array<Vec3, 3>& corners,
                                       const BlockCorners& leaf) const {
@@ -311,16 +325,10 @@ class Searcher {
     const double at_p = at(0), at_q = at(1), at_r = at(2);
     const Number least = number(std::min({at_p, at_q, at_r})),
                  most = number(std::max({at_p, at_q, at_r}));
-    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
-    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
     std::uint32_t out = 0;
     for (std::size_t from = 0; from < kWide; from += kLanes) {
-      const auto place = [&](std::size_t k) {
-        return dot(LaneTriangle::load(leaf.corner, k, from) - origin, direction);
-      };
-      const Number x = place(0), y = place(1), z = place(2);
-      const Number gap = hn::Max(hn::Sub(hn::Min(hn::Min(x, y), z), most),
-                                 hn::Sub(least, hn::Max(hn::Max(x, y), z)));
+      const Ends own = ends_along(d, leaf, from);
+      const Number gap = hn::Max(hn::Sub(own.least, most), hn::Sub(least, own.most));
       out |= boxes::bits_of(Numbers(), hn::Le(gap, number(limit))) << from;
     }
     return out;
@@ -340,17 +348,9 @@ class Searcher {
 
   // Sets the leaf's extremes along the direction: the largest coordinates (`most`) or the smallest.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
-    const Numbers n;
-    const Vec3& d = search_.direction;
-    const Point direction = {number(d[0]), number(d[1]), number(d[2])};
-    const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
     for (std::size_t from = 0; from < kWide; from += kLanes) {
-      const auto place = [&](std::size_t corner) {
-        return dot(LaneTriangle::load(leaf.corner, corner, from) - origin, direction);
-      };
-      const Number p = place(0), q = place(1), r = place(2);
-      hn::Store(most ? hn::Max(hn::Max(p, q), r) : hn::Min(hn::Min(p, q), r), n,
-                &leaf.extreme[from]);
+      const Ends ends = ends_along(search_.direction, leaf, from);
+      hn::Store(most ? ends.most : ends.least, Numbers(), &leaf.extreme[from]);
     }
     const auto end = leaf.extreme.begin() + leaf.count;
     leaf.most_extreme = most ? *std::max_element(leaf.extreme.begin(), end)
@@ -393,7 +393,13 @@ class Searcher {
     if (batch.count == 0) return;
     BatchBounds bounds;
     bound_batch(batch, bounds);
-    find_common_corners(bounds);
+    // Triangles of two objects that have a corner in common meet. The bounds may not show that,
+    // since no edge need pierce a face, as in equal objects and in fans.
+    for (std::size_t k = 0; k < batch.count && !self_; ++k) {
+      const auto& [a, b] = batch.pairs[k];
+      if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
+        bounds.upper[k] = 0;
+    }
     search_.counts.triangle_pairs += batch.count;
     const double before = search_.upper;
     std::size_t best = kWide;
@@ -423,17 +429,6 @@ class Searcher {
     }
     if (!probing_) keep(bounds);
     batch.count = 0;
-  }
-  // Triangles of two objects that have a corner in common meet. The bounds may not show that, since
-  // no edge need pierce a face, as in equal objects and in fans.
-  void find_common_corners(BatchBounds& bounds) const {
-    if (self_) return;
-    const PairBatch& batch = memory_.batch;
-    for (std::size_t k = 0; k < batch.count; ++k) {
-      const auto& [a, b] = batch.pairs[k];
-      if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
-        bounds.upper[k] = 0;
-    }
   }
   void keep(const BatchBounds& bounds) {
     const double bound = search_.bound();

@@ -99,7 +99,6 @@ struct LaneTriangle {
   }
 };
 
-/// The guess of two closest points.
 class Guess {
  public:
   HWY_INLINE Guess(const LaneTriangle& a, const LaneTriangle& b)

@@ -80,9 +80,9 @@ struct Range {
   }
 };
 
-// As sorted_unique(). Calls `release` when the parts are no longer read.
-template <class Release>
-std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release& release) {
+// As sorted_unique(). Empties `given`, if it is not null, when the parts are no longer read.
+std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
+                                    std::vector<std::vector<TrianglePair>>* given) {
   std::uint64_t least = UINT64_MAX, most = 0;
   std::size_t total = 0;
   for (const auto& part : parts) {
@@ -116,7 +116,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
     distinct[chunk] =
         ranges[chunk].sort(parts, std::span(out).subspan(first[chunk], ranges[chunk].size()));
   });
-  release();
+  if (given != nullptr) given->clear();
   std::size_t count = 0;
   for (std::size_t k = 0; k < chunks; ++k) {
     if (count < first[k]) std::copy_n(out.begin() + first[k], distinct[k], out.begin() + count);
@@ -129,12 +129,12 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
 }  // namespace
 
 std::vector<TrianglePair> sorted_unique(Parts parts, unsigned threads) {
-  return sorted_of(parts, threads, [] {});
+  return sorted_of(parts, threads, nullptr);
 }
 
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads) {
-  return sorted_of(parts, threads, [&] { parts.clear(); });
+  return sorted_of(parts, threads, &parts);
 }
 
 void GatheredPairs::add(std::span<const TrianglePair> some) {

@@ -4,40 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 
 namespace farcull {
-
-Box Box::empty() {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return {Vec3::Constant(kInf), Vec3::Constant(-kInf)};
-}
-
-void Box::add(const Vec3& p) {
-  lo = lo.cwiseMin(p);
-  hi = hi.cwiseMax(p);
-}
-
-void Box::add(const Box& other) {
-  lo = lo.cwiseMin(other.lo);
-  hi = hi.cwiseMax(other.hi);
-}
-
-bool overlap(const Box& a, const Box& b) {
-  return !intersection(a, b).is_empty();  // so a box that is empty along one axis meets nothing
-}
-
-bool lies_within(const Box& inner, const Box& outer) {
-  return (inner.lo.array() >= outer.lo.array()).all() &&
-         (inner.hi.array() <= outer.hi.array()).all();
-}
-
-Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }
 
 void validate(const Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
@@ -80,12 +54,9 @@ void validate(const Scene& scene, const std::string& where) {
 }
 
 std::vector<Box> triangle_boxes(const Scene& scene) {
-  std::vector<Box> boxes(scene.triangles.size());
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    const auto& [a, b, c] = scene.triangles[t];
-    boxes[t] = {scene.vertices[a], scene.vertices[a]};
-    boxes[t].add(scene.vertices[b]);
-    boxes[t].add(scene.vertices[c]);
+  std::vector<Box> boxes(scene.triangles.size(), Box::empty());
+  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) boxes[t].add(p);
   }
   return boxes;
 }
@@ -146,10 +117,7 @@ std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> t
   return objects;
 }
 
-bool has_self(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const Object& object) { return object.self; });
-}
+bool has_self(const Scene& scene) { return std::ranges::any_of(scene.objects, &Object::self); }
 
 std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs, std::span<const ObjectPair> more) {
   pairs.insert(pairs.end(), more.begin(), more.end());
@@ -198,8 +166,6 @@ std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ign
   return is_ignored.any() ? std::erase_if(pairs, is_ignored) : 0;
 }
 
-// ---- corners that moved ----
-
 void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   ++frame_;
   triangles_.clear();
@@ -229,15 +195,14 @@ FrameChange MovedCorners::compare(const Scene& scene) {
   // If an allocation below throws, the copy is partial and is lost.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;
-  std::vector<Part> objects;
-  objects.reserve(scene.objects.size());
-  for (const Object& o : scene.objects)
-    objects.push_back({o.first_triangle, o.triangle_count, o.self});
+  const auto but_its_name = [](const Object& o) {
+    return std::tuple(o.first_triangle, o.triangle_count, o.self);
+  };
   const std::size_t n = scene.vertices.size();
-  out.same = copy && copy->vertices.size() == n && copy->objects == objects &&
-             copy->triangles == scene.triangles;
+  out.same = copy && copy->vertices.size() == n && copy->triangles == scene.triangles &&
+             std::ranges::equal(copy->objects, scene.objects, {}, but_its_name, but_its_name);
   if (!out.same) {
-    last_ = {std::move(objects), scene.triangles, scene.vertices};
+    last_ = {scene.objects, scene.triangles, scene.vertices};
     return out;
   }
   // Compares bits: -0.0 and 0.0 count as different, which costs a comparison at most.
@@ -296,8 +261,6 @@ bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pai
   }
   return 2 * unmoved >= count;
 }
-
-// ---- matrices ----
 
 bool is_invertible(std::array<double, 9> r) {
   for (int row = 0; row < 9; row += 3) {

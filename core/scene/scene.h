@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <optional>
@@ -21,18 +22,26 @@ struct Box {
   Vec3 lo;
   Vec3 hi;
 
-  static Box empty();
+  static Box empty() { return {Vec3::Constant(HUGE_VAL), Vec3::Constant(-HUGE_VAL)}; }
   bool is_empty() const { return (lo.array() > hi.array()).any(); }
-  void add(const Vec3& p);
-  void add(const Box& other);
+  void add(const Vec3& p) { add(Box{p, p}); }
+  void add(const Box& other) {
+    lo = lo.cwiseMin(other.lo);
+    hi = hi.cwiseMax(other.hi);
+  }
 };
 
-/// True iff the closed boxes share a point (touching counts). Exact: it only compares doubles.
-bool overlap(const Box& a, const Box& b);
-/// True iff `outer` contains all of `inner`.
-bool lies_within(const Box& inner, const Box& outer);
 /// The common part of two boxes; empty if they do not overlap.
-Box intersection(const Box& a, const Box& b);
+inline Box intersection(const Box& a, const Box& b) {
+  return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)};
+}
+/// True iff the closed boxes share a point (touching counts); never if one is empty along an axis.
+/// Exact: it only compares doubles.
+inline bool overlap(const Box& a, const Box& b) { return !intersection(a, b).is_empty(); }
+/// True iff `outer` contains all of `inner`.
+inline bool lies_within(const Box& inner, const Box& outer) {
+  return (inner.lo.array() >= outer.lo.array() && inner.hi.array() <= outer.hi.array()).all();
+}
 
 /// Two objects as indices, a < b; or one object twice.
 struct ObjectPair {
@@ -171,8 +180,6 @@ class IgnoredObjects {
   std::vector<std::uint32_t> others_;
 };
 
-// ---- which corners moved from one frame to the next ----
-
 /// What changed from the previous frame of a scene to this one.
 struct FrameChange {
   bool same = false;  // number of vertices, triangles and objects are those of the frame before
@@ -205,13 +212,8 @@ class MovedCorners {
   static constexpr int kMostWaits = 16;  // frames in a row that may wait
 
  private:
-  struct Part {
-    std::uint32_t first, count;
-    bool self;
-    bool operator==(const Part&) const = default;
-  };
   struct Copy {
-    std::vector<Part> objects;
+    std::vector<Object> objects;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> vertices;
   };

@@ -1,7 +1,5 @@
-// Objects are swept by BoxSweep: insertion sort moves the ends of the last call into their new
-// order and reports which ends changed places. The triangles that may have candidates are put in
-// columns across the sweep's axis, in the order of the last call, and each column is sorted and
-// swept.
+// Objects are swept by BoxSweep. The triangles that may have candidates are put in columns across
+// the sweep's axis, in the order of the last call, and each column is sorted and swept.
 #include "core/sweep/sweep_prune.h"
 
 #include <algorithm>
@@ -25,15 +23,14 @@ constexpr std::uint64_t kMoves = 8;
 // Sorts a list that is almost sorted. Calls exchanged(e, f) once for each two elements in the wrong
 // order, when e moves from behind f to before it. Returns false, with the list not sorted, if it
 // takes more than kMoves moves per element.
-template <class Element, class Less, class Exchanged>
-bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Less& less,
-                    const Exchanged& exchanged) {
+template <class Element, class Exchanged>
+bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Exchanged& exchanged) {
   const std::uint64_t most = kMoves * list.size();
   std::uint64_t moved = 0;
   for (std::size_t i = 1; i < list.size() && moved <= most; ++i) {
     const Element element = list[i];
     std::size_t to = i;
-    for (; to > 0 && less(element, list[to - 1]); --to) {
+    for (; to > 0 && element < list[to - 1]; --to) {
       exchanged(element, list[to - 1]);
       list[to] = list[to - 1];
     }
@@ -50,7 +47,6 @@ bool meet(const Box& a, const Box& b) {
          b.lo.y() <= a.hi.y() && a.lo.z() <= b.hi.z() && b.lo.z() <= a.hi.z();
 }
 
-/// The state of a triangle.
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
 /// Marks a group of one: each triangle of a `self` object is a group of its own.
@@ -62,16 +58,10 @@ constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
 struct Key {
   double lo;
   std::uint32_t index;
+  bool operator<(const Key& other) const { return lo < other.lo; }
 };
 
-bool less(const Key& a, const Key& b) { return a.lo < b.lo; }
-
 }  // namespace
-
-// Orders by value; at equal values lower ends come first, since touching boxes overlap.
-bool BoxSweep::before(const End& e, const End& f) {
-  return e.value < f.value || (e.value == f.value && (e.box_and_side & 1) < (f.box_and_side & 1));
-}
 
 // Why the pairs are right after an update. Along one axis, two boxes that are not empty overlap iff
 // each lower end stands before the other's upper end; at equal coordinates lower ends stand first.
@@ -117,7 +107,7 @@ void BoxSweep::start(std::span<const Box> boxes) {
       ends.push_back({boxes[i].lo[axis], 2 * i});
       ends.push_back({boxes[i].hi[axis], 2 * i + 1});
     }
-    std::sort(ends.begin(), ends.end(), [](const End& e, const End& f) { return before(e, f); });
+    std::sort(ends.begin(), ends.end());
   }
   std::vector<std::uint32_t> each(boxes.size());
   std::iota(each.begin(), each.end(), 0u);
@@ -129,8 +119,7 @@ bool BoxSweep::sort_axis(int axis, std::span<const Box> boxes) {
     const Box& box = boxes[end.box_and_side / 2];
     end.value = end.box_and_side & 1 ? box.hi[axis] : box.lo[axis];
   }
-  const auto less = [](const End& e, const End& f) { return before(e, f); };
-  return insertion_sort(std::span(ends_[axis]), swaps_, less, [&](const End& e, const End& f) {
+  return insertion_sort(std::span(ends_[axis]), swaps_, [&](const End& e, const End& f) {
     if (((e.box_and_side ^ f.box_and_side) & 1) == 0) return;  // both lower or both upper ends
     const std::uint32_t i = e.box_and_side / 2, j = f.box_and_side / 2;
     if (i == j) return;
@@ -337,17 +326,15 @@ void SweepPrune::fill_columns(std::span<const Box> boxes) {
   }
 }
 
-/// Sorts and sweeps each column.
 std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   std::vector<TrianglePair> pairs;
   std::vector<Key> keys;  // small, so that moving them is cheap
-  const auto nothing = [](const Key&, const Key&) {};
   for (std::size_t c = 0; c + 1 < starts_.size(); ++c) {
     const std::span column(entries_.data() + starts_[c], entries_.data() + starts_[c + 1]);
     keys.clear();
     for (std::uint32_t i = 0; i < column.size(); ++i) keys.push_back({column[i].lo[0], i});
-    if (!insertion_sort(std::span(keys), counts.swaps, less, nothing)) {
-      std::sort(keys.begin(), keys.end(), less);
+    if (!insertion_sort(std::span(keys), counts.swaps, [](const Key&, const Key&) {})) {
+      std::sort(keys.begin(), keys.end());
       ++counts.sorts;
     }
     const std::size_t u = c & ((std::size_t{1} << bits_[0]) - 1), v = c >> bits_[0];
@@ -374,7 +361,7 @@ void SweepPrune::sort_order() {
   std::vector<Key> keys;
   keys.reserve(items_.size());
   for (const Item& item : items_) keys.push_back({item.lo[0], item.triangle});
-  std::sort(keys.begin(), keys.end(), less);
+  std::sort(keys.begin(), keys.end());
   for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = keys[i].index;
 }
 

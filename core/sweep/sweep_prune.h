@@ -23,8 +23,7 @@
 
 namespace farcull {
 
-/// Finds the overlapping pairs of a set of moving boxes, from frame to frame. The ends of all boxes
-/// along each axis stay in sorted lists.
+/// Finds the overlapping pairs of a set of moving boxes, from frame to frame.
 class BoxSweep {
  public:
   /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,
@@ -44,9 +43,12 @@ class BoxSweep {
   struct End {
     double value;
     std::uint32_t box_and_side;  // 2 box + 1 for the upper end
+    // At equal values lower ends come first, since touching boxes overlap.
+    bool operator<(const End& f) const {
+      return value < f.value || (value == f.value && (box_and_side & 1) < (f.box_and_side & 1));
+    }
   };
 
-  static bool before(const End& e, const End& f);
   void start(std::span<const Box> boxes);
   bool sort_axis(int axis, std::span<const Box> boxes);
 
@@ -90,8 +92,7 @@ class SweepPrune {
   /// are then the pairs whose given boxes overlap. Throws std::logic_error if there are not as many
   /// boxes as triangles.
   SweepPruneResult find(const Scene& scene, std::span<const Box> boxes);
-  /// Makes the next call start as the first one did.
-  void forget();
+  void forget();  // as BoxSweep::forget()
 
  private:
   /// The columns that the box of a triangle meets, first to last along two axes.

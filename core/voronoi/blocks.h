@@ -1,7 +1,6 @@
 // Visits the blocks of cells level by level. Each block has the triangles that can matter to its
 // cells, and passes on those that can still matter to its parts. A level reads only results of the
-// levels above it, so the answer does not depend on the number of threads. Only for the two forms
-// of the diagram (voronoi.h).
+// levels above it, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -58,10 +57,8 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   std::array<std::vector<std::pair<int, int>>, 3> parts;
   for (std::size_t k = 0; k < 3; ++k) {
     const int from = block.from[k], to = block.to[k], middle = from + (to - from) / 2;
-    if (to - from > 1)
-      parts[k] = {{from, middle}, {middle, to}};
-    else
-      parts[k] = {{from, to}};
+    parts[k].emplace_back(from, to - from > 1 ? middle : to);
+    if (to - from > 1) parts[k].emplace_back(middle, to);
   }
   const std::size_t first = below.triangles.size();
   below.triangles.insert(below.triangles.end(), kept.begin(), kept.end());

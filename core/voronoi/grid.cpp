@@ -1,6 +1,5 @@
 // The grid of the diagram, and triangles on it.
 #include <algorithm>
-#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/voronoi/voronoi.h"
@@ -9,9 +8,7 @@ namespace farcull {
 namespace {
 
 // All roundings of the grid go outward.
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-double up(double x) { return std::nextafter(x, kInfinite); }
+double up(double x) { return std::nextafter(x, HUGE_VAL); }
 
 }  // namespace
 

@@ -32,13 +32,11 @@ struct BlockBox {
   Exactly centre, half;
 };
 
-namespace domination {
-
 Exactly from(const Exactly& centre, const GridPoint& p) {
   return {static_cast<double>(p[0]) - centre[0], static_cast<double>(p[1]) - centre[1],
           static_cast<double>(p[2]) - centre[2]};
 }
-double square(const Exactly& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
+double squared(const Exactly& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
 
 using Corners = std::array<Exactly, 3>;  // relative to the centre of the block, as v
 
@@ -58,19 +56,17 @@ double by_box(const Exactly& v, const Corners& t, const Exactly& half) {
 double by_corners(const Exactly& v, const Corners& t, const Exactly& half) {
   double most = -HUGE_VAL, longest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    double along = square(v) - square(t[i]);
+    double along = squared(v) - squared(t[i]);
     Exactly side;
     for (std::size_t k = 0; k < 3; ++k) {
       along += 2 * half[k] * std::abs(t[i][k] - v[k]);
       side[k] = t[i][k] - t[(i + 1) % 3][k];
     }
     most = std::max(most, along);
-    longest = std::max(longest, square(side));
+    longest = std::max(longest, squared(side));
   }
   return most + longest / 3;
 }
-
-}  // namespace domination
 
 // The corner of the triangles `ids` that is nearest to the centre. Precondition: ids is not empty.
 Exactly nearest_corner(std::span<const std::uint32_t> ids,
@@ -79,8 +75,8 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
   double least = HUGE_VAL;
   for (const std::uint32_t id : ids) {
     for (const GridPoint& corner : triangles[id].corners) {
-      const Exactly relative = domination::from(block.centre, corner);
-      const double square = domination::square(relative);
+      const Exactly relative = from(block.centre, corner);
+      const double square = squared(relative);
       if (square >= least) continue;
       least = square;
       out = relative;
@@ -99,11 +95,9 @@ bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
       2 * static_cast<double>(voronoi_error(longest)) * 3.5 * static_cast<double>(longest);
   return std::all_of(ids.begin(), ids.end(), [&](std::uint32_t id) {
     const auto& corners = triangles[id].corners;
-    const domination::Corners t = {domination::from(block.centre, corners[0]),
-                                   domination::from(block.centre, corners[1]),
-                                   domination::from(block.centre, corners[2])};
-    return domination::by_corners(corner, t, block.half) < -margin ||
-           domination::by_box(corner, t, block.half) < -margin;
+    const Corners t = {from(block.centre, corners[0]), from(block.centre, corners[1]),
+                       from(block.centre, corners[2])};
+    return by_corners(corner, t, block.half) < -margin || by_box(corner, t, block.half) < -margin;
   });
 }
 
@@ -111,7 +105,7 @@ class Published {
  public:
   using Found = std::vector<ObjectPair>;
   Published(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid)
-      : triangles_(triangles), longest_(grid.longest()), error_(voronoi_error(grid.longest())) {}
+      : triangles_(triangles), longest_(grid.longest()) {}
 
   Found nothing() const { return {}; }
 
@@ -242,7 +236,7 @@ class Published {
 
   const std::vector<GridTriangle>& triangles_;
   int longest_;
-  float error_;
+  float error_ = voronoi_error(longest_);
   std::vector<ObjectPair> pairs_;  // of the levels above
 };
 

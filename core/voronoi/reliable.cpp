@@ -39,10 +39,8 @@ class Reliable {
       passed.push_back(kept.triangle);
     if (passed.empty()) return;
     if (block.is_cell()) {
-      Block cell = block;
-      cell.first = found.cells.triangles.size();
-      cell.count = passed.size();
-      found.cells.blocks.push_back(cell);
+      found.cells.blocks.push_back(
+          {block.from, block.to, found.cells.triangles.size(), passed.size()});
       found.cells.triangles.insert(found.cells.triangles.end(), passed.begin(), passed.end());
     } else {
       add_parts(block, passed, below);

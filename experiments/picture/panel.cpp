@@ -77,9 +77,9 @@ Image painted(const GlContext& context, const Scene& scene, const Window& window
               const std::vector<PictureTriangle>& triangles) {
   const int larger = std::max(window.width, window.height);
   return draw_picture(context, scene, window, triangles,
-                      {.samples = larger <= 1200   ? 4
-                                  : larger <= 2400 ? 3
-                                                   : 2});
+                      larger <= 1200   ? 4
+                      : larger <= 2400 ? 3
+                                       : 2);
 }
 
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,

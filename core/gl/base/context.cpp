@@ -23,7 +23,6 @@ namespace farcull {
 struct EglContext {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-  bool reset_detection = false;
 
   ~EglContext() {
     // The display stays initialized: EGL has one per device, and another context of this process
@@ -53,22 +52,20 @@ bool has_word(const std::string& list, const std::string& word) {
 // in this process may have opened the display when it had another value.
 
 // Reads LP_NUM_THREADS as llvmpipe does. Without it: a thread per core, but none on a single core.
-int read_variable() {
-  constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
-  const long cores = static_cast<long>(std::thread::hardware_concurrency());
-  long threads = cores > 1 ? cores : 0;
-  if (const char* const text = std::getenv("LP_NUM_THREADS")) {
-    char* end = nullptr;
-    const long number = std::strtol(text, &end, 0);
-    if (end != text) threads = number;
-  }
-  return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
-}
-
 // Must be called before the first display is opened, which is when llvmpipe reads the variable.
 int asked_threads() {
-  static const int threads = read_variable();
-  return threads;
+  static const int asked = [] {
+    constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
+    const long cores = static_cast<long>(std::thread::hardware_concurrency());
+    long threads = cores > 1 ? cores : 0;
+    if (const char* const text = std::getenv("LP_NUM_THREADS")) {
+      char* end = nullptr;
+      const long number = std::strtol(text, &end, 0);
+      if (end != text) threads = number;
+    }
+    return static_cast<int>(threads < 0 ? kMost : std::min(threads, kMost));
+  }();
+  return asked;
 }
 
 int running_threads() {
@@ -84,17 +81,12 @@ int running_threads() {
   return threads;
 }
 
-// Address space that Mesa's software device takes: its libraries with LLVM, and a stack and a heap
-// for each of up to 16 threads. With less it crashes, or seems not to be installed.
-std::size_t driver_bytes() {
-  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
-  return (std::size_t{256} + std::size_t{64} * threads) << 20;
-}
-
-// Throws Error if less than driver_bytes() of address space is left, as under ulimit -v. To find
-// out, reserves that much and releases it untouched.
+// Throws Error if less address space is left, as under ulimit -v, than Mesa's software device
+// takes: its libraries with LLVM, and a stack and a heap for each of up to 16 threads. With less it
+// crashes, or seems not to be installed. To find out, reserves that much and releases it untouched.
 void require_memory() {
-  const std::size_t bytes = driver_bytes();
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+  const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
   void* const reserved = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
                                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (reserved == MAP_FAILED) {
@@ -155,7 +147,7 @@ std::string with_cause(const char* reason) {
 }
 
 // The device of the current context.
-GlInfo read_info(const std::string& kind, bool reset_detection) {
+GlInfo read_info(const std::string& kind) {
   GlInfo info;
   info.kind = kind;
   info.vendor = gl_text(GL_VENDOR);
@@ -171,7 +163,10 @@ GlInfo read_info(const std::string& kind, bool reset_detection) {
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
   info.max_viewport = std::min(viewport[0], viewport[1]);
   info.max_storage_block = static_cast<long>(block);
-  info.reset_detection = reset_detection;
+  GLint strategy = GL_NO_RESET_NOTIFICATION;
+  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45)
+    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+  info.reset_detection = strategy == GL_LOSE_CONTEXT_ON_RESET;
   return info;
 }
 
@@ -213,10 +208,6 @@ std::string open(EGLDeviceEXT device, EglContext& out) {
   }
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, out.context))
     return with_cause("its context cannot be made current");
-  GLint strategy = GL_NO_RESET_NOTIFICATION;
-  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45)
-    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
-  out.reset_detection = strategy == GL_LOSE_CONTEXT_ON_RESET;
   return "";
 }
 
@@ -299,7 +290,7 @@ GlContext::GlContext(const std::string& device) {
       handles_ = std::make_unique<Handles>();
       const std::string problem = open(list[i], handles_->egl);
       if (problem.empty()) {
-        handles_->info = read_info(kind, handles_->egl.reset_detection);
+        handles_->info = read_info(kind);
         check_gl("context");
         return;
       }
@@ -320,10 +311,8 @@ const GlInfo& GlContext::info() const { return handles_->info; }
 bool GlContext::hardware_listed() {
   const FloatingPointGuard guard;  // drivers are loaded here, too
   require_egl();
-  for (EGLDeviceEXT device : devices()) {
-    if (describe(device, 0).kind == "hardware") return true;
-  }
-  return false;
+  return std::ranges::any_of(
+      devices(), [](EGLDeviceEXT device) { return describe(device, 0).kind == "hardware"; });
 }
 
 std::vector<GlDevice> GlContext::list_devices() {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 
 #include "core/base/error.h"
 
@@ -49,26 +48,8 @@ void bind_storage(GLuint name) {
 
 }  // namespace
 
-void throw_lost(const std::string& stage, const std::string& reason, const std::string& cause) {
-  throw Error("GL " + stage, reason, cause + ": run again, or with another {device}");
-}
-
-bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
-  try {
-    const GlCurrent current(context);
-    for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_ANY_SAMPLES_PASSED}) {
-      GLint open = 0;
-      glGetQueryiv(target, GL_CURRENT_QUERY, &open);
-      if (open != 0) glEndQuery(target);
-    }
-    drop();
-    // Ignores errors about the deleted objects. A lost context may report errors without end.
-    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
-    }
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+void throw_lost(const std::string& stage, const std::string& reason) {
+  throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
 }
 
 // The numbers look random, so it is unlikely that a few of them cancel in a sum. Each step is a
@@ -122,21 +103,6 @@ void GlStore::read(std::size_t at, void* out, std::size_t bytes) const {
                      static_cast<GLsizeiptr>(bytes), out);
 }
 
-void gl_wait(const std::string& stage) {
-  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  GLenum answer = GL_TIMEOUT_EXPIRED;
-  for (int second = 0; second < kLongestWait && answer == GL_TIMEOUT_EXPIRED; ++second)
-    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
-  glDeleteSync(fence);
-  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
-  check_gl(stage);
-  throw Error("GL " + stage,
-              answer == GL_TIMEOUT_EXPIRED
-                  ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
-                  : "the device does not say whether it has finished",
-              "choose a smaller resolution, or another {device}");
-}
-
 GlTexture gl_texture(GLenum format, int width, int height) {
   GlTexture out = gl_make<GlTexture>(glGenTextures);
   glBindTexture(GL_TEXTURE_2D, out);
@@ -180,64 +146,12 @@ GlProgram gl_program(const std::string& name, const std::vector<std::string>& de
   return program;
 }
 
-void gl_dispatch(std::uint32_t groups, int row) {
-  const std::uint32_t columns = std::min(groups, static_cast<std::uint32_t>(row));
-  glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  if (bytes < 16) {
-    glBufferData(GL_SHADER_STORAGE_BUFFER, 16, nullptr, GL_STREAM_DRAW);
-    if (bytes > 0 && data)
-      glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-  } else {
-    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
-  }
-}
-
-GlClock::GlClock(std::size_t stamps) : stamps_(stamps) {
-  GLint bits = 0;
-  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
-  ticks_ = bits > 0;
-}
-
-void GlClock::forget() {
-  for (GlQuery& stamp : stamps_) stamp = GlQuery();
-}
-
-// Each stamp has a new name. If the stamp is lost, the name has no object, so no old time is read.
-void GlClock::stamp(std::size_t place) {
-  if (!ticks_) return;
-  GlQuery& query = stamps_.at(place);
-  query = gl_make<GlQuery>(glGenQueries);
-  glQueryCounter(query, GL_TIMESTAMP);
-}
-
-double GlClock::between(std::size_t from, std::size_t to) const {
-  std::array<GLuint64, 2> ns{};
-  for (std::size_t k = 0; k < ns.size(); ++k) {
-    const GlQuery& query = stamps_.at(k == 0 ? from : to);
-    if (query == 0) return -1;
-    GLuint ready = GL_FALSE;
-    glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &ready);
-    if (ready == GL_TRUE) glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns[k]);
-    check_gl("clock");
-    if (ns[k] == 0) return -1;
-  }
-  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
-}
-
-std::uint32_t gl_sum(std::span<const std::byte> data) {
-  std::uint32_t sum = 0;
-  const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
-  for (std::uint32_t w = 0; w < count; ++w) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, data.data() + w * sizeof word, sizeof word);
-    sum += gl_mixed(word, w);
-  }
-  return sum;
+  const bool small = bytes < 16;
+  const auto size = static_cast<GLsizeiptr>(bytes);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, small ? 16 : size, small ? nullptr : data, GL_STREAM_DRAW);
+  if (small && bytes > 0 && data) glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, data);
 }
 
 }  // namespace farcull

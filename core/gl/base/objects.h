@@ -1,6 +1,5 @@
-// The GL objects that this folder shares: names that are deleted with their owners, programs,
-// storage buffers, the device's clock, and the echo (a checksum that reveals lost commands). For
-// core/gl and its tests alone.
+// The GL objects that core/gl shares: names that are deleted with their owners, programs, storage
+// buffers, and the echo (a checksum that reveals lost commands). For core/gl and its tests alone.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -9,9 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,13 +17,8 @@
 
 namespace farcull {
 
-/// Throws Error naming the GL stage: `cause` happened, and `reason` says how it was noticed.
-[[noreturn]] void throw_lost(const std::string& stage, const std::string& reason,
-                             const std::string& cause = "a command was lost");
-
-/// Makes the context current, ends open queries, calls drop() to delete objects, and clears GL's
-/// errors. False if the context cannot be made current: then drop() was not called.
-bool gl_forget(const GlContext& context, const std::function<void()>& drop);
+/// Throws Error naming the GL stage: a command was lost, and `reason` says how it was noticed.
+[[noreturn]] void throw_lost(const std::string& stage, const std::string& reason);
 
 template <void (*Delete)(GLuint)>
 class GlName {
@@ -47,19 +39,19 @@ class GlName {
   GLuint name_ = 0;
 };
 
-inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
-inline void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
-inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+/// Calls one of GL's functions that delete several objects. They are pointers of libepoxy.
+template <auto* Delete>
+void delete_one(GLuint name) {
+  (*Delete)(1, &name);
+}
 inline void delete_program(GLuint name) { glDeleteProgram(name); }
-inline void delete_query(GLuint name) { glDeleteQueries(1, &name); }
 
-using GlBuffer = GlName<delete_buffer>;
-using GlTexture = GlName<delete_texture>;
-using GlFramebuffer = GlName<delete_framebuffer>;
-using GlVertexArray = GlName<delete_vertex_array>;
+using GlBuffer = GlName<delete_one<&epoxy_glDeleteBuffers>>;
+using GlTexture = GlName<delete_one<&epoxy_glDeleteTextures>>;
+using GlFramebuffer = GlName<delete_one<&epoxy_glDeleteFramebuffers>>;
+using GlVertexArray = GlName<delete_one<&epoxy_glDeleteVertexArrays>>;
+using GlQuery = GlName<delete_one<&epoxy_glDeleteQueries>>;
 using GlProgram = GlName<delete_program>;
-using GlQuery = GlName<delete_query>;
 
 template <class Object>
 Object gl_make(void (*generate)(GLsizei, GLuint*)) {
@@ -79,10 +71,6 @@ struct ShaderText {
 /// #define line each) and the stage's texts. Throws Error with the driver's log and the name.
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
-
-/// Starts `groups` work groups of the program in use, in rows of at most `row`. A barrier follows,
-/// so that later commands can read what the groups write.
-void gl_dispatch(std::uint32_t groups, int row);
 
 /// Gives a shader storage buffer new contents, and at least 16 bytes, so that it can be bound.
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
@@ -117,29 +105,6 @@ class GlStore {
   GlBuffer name_;
   std::uint32_t tag_ = 0;
   std::size_t bytes_ = 0;
-};
-
-/// Waits until the device has finished all commands. Throws Error naming `stage` if that takes
-/// longer than kLongestWait, or if the device cannot tell.
-void gl_wait(const std::string& stage);
-constexpr int kLongestWait = 600;  // s
-
-/// Records when the device reaches the places 0, 1, ... of its work, if it has a clock
-/// (GL_TIMESTAMP). Never waits; no answer depends on it. A context must be current in every call.
-class GlClock {
- public:
-  /// A clock with `stamps` places.
-  explicit GlClock(std::size_t stamps);
-  /// Forgets all places.
-  void forget();
-  void stamp(std::size_t place);
-  /// Milliseconds on the device between two places; negative if unknown. The device must have
-  /// finished all commands. Throws Error if a time stamp was lost.
-  double between(std::size_t from, std::size_t to) const;
-
- private:
-  bool ticks_ = false;
-  std::vector<GlQuery> stamps_;
 };
 
 // The echo (assumption A7): the device returns a hash of what a program read, and of what was sent,
@@ -181,8 +146,5 @@ struct GlEcho {
   }
   void add_at(std::uint32_t at, std::uint32_t word) { sum += gl_mixed(word, at); }
 };
-
-/// The sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
-std::uint32_t gl_sum(std::span<const std::byte> data);
 
 }  // namespace farcull

@@ -49,7 +49,7 @@ class GlCanvas final : public Canvas {
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
 
-  const RasterLimits& limits() const override;
+  const RasterLimits& limits() const override { return limits_; }
   void begin(const Window& window, const Drawables& drawables) override;
   std::vector<std::uint8_t> run(const Pass& pass) override;
   std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
@@ -72,7 +72,6 @@ class GlCanvas final : public Canvas {
   CanvasWork earlier_;                  // work of states that were dropped
 };
 
-/// A GlCanvas behind the interface Canvas.
 std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
                                   const SolidProgram& solid, const GlCanvasOptions& options = {});
 

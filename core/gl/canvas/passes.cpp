@@ -1,7 +1,6 @@
 // The passes of the GL canvas. A pass is cut into batches of consecutive draws of a step that read
 // the same element buffer. The draw list is sent, and drawn batch by batch. The results are used
-// only if the report, the count of primitives and the control items show that everything ran. After
-// any failure GlCanvas forgets its state, since the contents of the device are then unknown.
+// only if the report, the count of primitives and the control items show that everything ran.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -141,15 +140,14 @@ CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
 void CanvasState::begin(const Window& to, const Drawables& drawables) {
   window = to;
   resize_target();
-  elements = drawables.elements();
   const auto bytes = mode == DepthMode::fragment ? std::as_bytes(std::span(drawables.proxies))
                                                  : std::as_bytes(std::span(drawables.triangles));
   static_assert(sizeof(Proxy) == 7 * 16 && sizeof(drawables.triangles[0]) == 3 * 16);
   const std::size_t chunk_bytes = per_chunk * 16 * vec4s();
   const bool known = choose_elements(bytes);
   std::vector<GlStore>& chunks = current.chunks;
-  chunks.resize((elements + per_chunk - 1) / per_chunk);
-  clock.stamp(0);
+  chunks.resize((drawables.elements() + per_chunk - 1) / per_chunk);
+  stamp(0);
   report->start(0, report->dispatches(bytes.size()) + chunks.size(), 0);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const auto chunk =
@@ -164,7 +162,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   if (!known) current.bytes.assign(bytes.begin(), bytes.end());
   set_uniforms(store_program);
   set_uniforms(ask_program);
-  clock.stamp(1);
+  stamp(1);
   read_report("upload");
   begun = true;
 }
@@ -194,7 +192,7 @@ bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   return false;
 }
 
-// Draws the batches of a pass and returns their number of primitives.
+// Returns the number of primitives.
 std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   const bool with_flags = options.query == QueryMode::flags;
   std::uint64_t primitives_of_pass = 0;
@@ -244,7 +242,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   const CanvasPass laid = lay_out(*this, pass, true);
   ++work.passes;
   const bool with_flags = options.query == QueryMode::flags;
-  clock.stamp(0);
+  stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
     // Every pass makes new queries. A query that is never issued then has no object, so it cannot
@@ -266,7 +264,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   glEndQuery(GL_PRIMITIVES_GENERATED);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   if (with_flags) report->pack(flags, laid.serial, laid.slots);
-  clock.stamp(1);
+  stamp(1);
 
   std::vector<std::uint8_t> seen = read_report("pass");
   GLuint64 drawn = kNone;
@@ -301,7 +299,7 @@ std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   work.dispatches = report->dispatches_in_all();
   work.downloaded_bytes += report->bytes_in_all() - bytes;
   ++work.spans;
-  const double ms = clock.between(0, 1);
+  const double ms = stamped_ms();
   if (ms >= 0) {
     ++work.timed;
     work.device_ms += ms;
@@ -445,12 +443,23 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
 
 GlCanvas::~GlCanvas() { forget(); }
 
-const RasterLimits& GlCanvas::limits() const { return limits_; }
-
 // Deletes everything on the device, or leaves that to the context if it cannot be made current.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
-  if (!gl_forget(context_, [&] { state_.reset(); })) static_cast<void>(state_.release());
+  try {
+    const GlCurrent current(context_);
+    for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_ANY_SAMPLES_PASSED}) {
+      GLint open = 0;
+      glGetQueryiv(target, GL_CURRENT_QUERY, &open);
+      if (open != 0) glEndQuery(target);
+    }
+    state_.reset();
+    // Ignores errors about the deleted objects. A lost context may report errors without end.
+    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
+    }
+  } catch (const Error&) {
+    static_cast<void>(state_.release());
+  }
 }
 
 CanvasWork GlCanvas::work() const {

@@ -1,7 +1,6 @@
 // Sets the state that a pass draws with. Each value that GL can return is read back after it was
 // set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
-// flags. Each dispatch and each batch of draws leaves an echo in the report, which is compared with
-// the echo computed here.
+// flags. The report compares each echo with the one computed here.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>
@@ -26,17 +25,42 @@ void require(bool set, const char* what) {
 }
 
 void set_enabled(GLenum capability, bool on, const char* what) {
-  if (on) {
-    glEnable(capability);
-  } else {
-    glDisable(capability);
-  }
+  (on ? glEnable : glDisable)(capability);
   require(glIsEnabled(capability) == (on ? GL_TRUE : GL_FALSE), what);
 }
 
 void bind_texture(GLuint name) {
   glBindTexture(GL_TEXTURE_2D, name);
   require(asked(GL_TEXTURE_BINDING_2D) == static_cast<GLint>(name), "the texture");
+}
+
+// The sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
+std::uint32_t sum_of(std::span<const std::byte> data) {
+  std::uint32_t sum = 0;
+  const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
+  for (std::uint32_t w = 0; w < count; ++w) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, data.data() + w * sizeof word, sizeof word);
+    sum += gl_mixed(word, w);
+  }
+  return sum;
+}
+
+// Waits until the device has finished all commands.
+void wait_for_device(const std::string& stage) {
+  constexpr int kLongest = 600;  // s
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum answer = GL_TIMEOUT_EXPIRED;
+  for (int second = 0; second < kLongest && answer == GL_TIMEOUT_EXPIRED; ++second)
+    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  glDeleteSync(fence);
+  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
+  check_gl(stage);
+  throw Error("GL " + stage,
+              answer == GL_TIMEOUT_EXPIRED
+                  ? "the device did not finish within " + std::to_string(kLongest) + " s"
+                  : "the device does not say whether it has finished",
+              "choose a smaller resolution, or another {device}");
 }
 
 // The capability that turns conservative rasterization on. Throws Error if the device has none.
@@ -89,22 +113,28 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
 }
 
 void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t offset,
-                            std::size_t bytes, std::uint32_t tag, const Numbers& n,
-                            std::uint32_t groups) {
+                            std::size_t bytes, std::uint32_t tag, std::uint32_t count,
+                            std::uint32_t serial, std::uint32_t flags) {
+  const std::uint32_t place = kHead + static_cast<std::uint32_t>(echoes_.size());
+  // The uniforms of canvas_work.comp: count, echo, serial, flags, bits.
+  const std::array n = {count, place, serial, flags, step == 1 ? place + 1 : 0};
   glUseProgram(programs_[step]);
-  glProgramUniform1ui(programs_[step], 0, n.count);
-  glProgramUniform1ui(programs_[step], 1, n.echo);
-  glProgramUniform1ui(programs_[step], 2, n.serial);
-  glProgramUniform1ui(programs_[step], 3, n.flags);
-  glProgramUniform1ui(programs_[step], 4, n.bits);
+  for (std::size_t k = 0; k < n.size(); ++k)
+    glProgramUniform1ui(programs_[step], static_cast<GLint>(k), n[k]);
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, from.name(), static_cast<GLintptr>(offset),
                     static_cast<GLsizeiptr>(bytes));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kReport, store_.name());
   GlEcho echo;
-  echo.add({step + 1, n.count, n.echo, n.serial, n.flags, n.bits, tag, store_.tag()});
+  echo.add({step + 1});
+  echo.add(n);
+  echo.add({tag, store_.tag()});
   echoes_.push_back(echo.sum);
-  finished_ += n.count;
-  gl_dispatch(groups, context_.info().max_compute_groups);
+  finished_ += count;
+  const std::uint32_t per_group = kGroup * kBatches[step];
+  const std::uint32_t groups = (count + per_group - 1) / per_group;
+  const std::uint32_t row = std::min(groups, std::uint32_t(context_.info().max_compute_groups));
+  glDispatchCompute(row, (groups + row - 1) / row, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   ++dispatches_;
 }
 
@@ -113,31 +143,19 @@ void CanvasReport::expect(const GlStore& store, std::span<const std::byte> data)
     const std::span<const std::byte> part = data.subspan(at, std::min(piece_, data.size() - at));
     std::uint32_t tag = store.tag();
     if (at > 0) std::memcpy(&tag, data.data() + at - kTagBytes, sizeof tag);
-    sum_ += gl_sum(part);
-    const auto count = static_cast<std::uint32_t>(part.size() / kVec4);
-    const std::uint32_t per_group = kGroup * kBatches[0];
+    sum_ += sum_of(part);
     dispatch(0, store, at, kTagBytes + part.size(), tag,
-             {.count = count,
-              .echo = kHead + static_cast<std::uint32_t>(echoes_.size()),
-              .serial = 0,
-              .flags = 0,
-              .bits = 0},
-             (count + per_group - 1) / per_group);
+             static_cast<std::uint32_t>(part.size() / kVec4), 0, 0);
   }
 }
 
 void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count) {
-  const std::uint32_t words = (count + 31) / 32;
-  const std::uint32_t per_group = kGroup * kBatches[1];
-  const auto echo = kHead + static_cast<std::uint32_t>(echoes_.size());
   flags_ = count;
-  dispatch(1, flags, 0, kTagBytes + flags.bytes(), flags.tag(),
-           {.count = words, .echo = echo, .serial = serial, .flags = count, .bits = echo + 1},
-           (words + per_group - 1) / per_group);
+  dispatch(1, flags, 0, kTagBytes + flags.bytes(), flags.tag(), (count + 31) / 32, serial, count);
 }
 
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
-  gl_wait(stage);
+  wait_for_device(stage);
   const std::size_t bits = kHead + echoes_.size();
   // An echo can equal this initial value by chance, but the number of finished work items cannot.
   // So if the read fails silently, that number is wrong, which is noticed below.
@@ -212,6 +230,9 @@ CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
       with_flags ? program("ask", {ask_define(), "FAR_FLAGS"}) : program("ask", {ask_define()});
   report.emplace(context, block, alignment);
   vertex_array = gl_make<GlVertexArray>(glGenVertexArrays);
+  GLint bits = 0;
+  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+  ticks = bits > 0;
   check_gl("canvas");
 }
 
@@ -331,11 +352,6 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Conservative rasterization is off for the canvas's own elements, which are exact without it.
-void CanvasState::set_conservative(bool on) const {
-  if (conservative != 0) set_enabled(conservative, on, "conservative rasterization");
-}
-
 // Sends the lists of a pass; the device sums them.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
@@ -376,8 +392,10 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());
-  if (before == nullptr || (before->chunk == kExtras) != (batch.chunk == kExtras))
-    set_conservative(batch.chunk != kExtras);
+  // Conservative rasterization is off for the canvas's own elements, which are exact without it.
+  const bool own = batch.chunk == kExtras;
+  if (conservative != 0 && (before == nullptr || (before->chunk == kExtras) != own))
+    set_enabled(conservative, !own, "conservative rasterization");
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, kDraws, draws.name(),
                     static_cast<GLintptr>(batch.offset * sizeof(GpuDraw)),
                     static_cast<GLsizeiptr>((batch.count + 1) * sizeof(GpuDraw)));
@@ -406,6 +424,26 @@ void CanvasState::draw(std::size_t first, std::size_t count) {
                  static_cast<GLsizei>(n) * vertices());
     ++work.draws;
   }
+}
+
+// Each stamp has a new name. If the stamp is lost, the name has no object, so no old time is read.
+void CanvasState::stamp(std::size_t place) {
+  if (!ticks) return;
+  stamps[place] = gl_make<GlQuery>(glGenQueries);
+  glQueryCounter(stamps[place], GL_TIMESTAMP);
+}
+
+double CanvasState::stamped_ms() const {
+  std::array<GLuint64, 2> ns{};
+  for (std::size_t k = 0; k < ns.size(); ++k) {
+    if (stamps[k] == 0) return -1;
+    GLuint ready = GL_FALSE;
+    glGetQueryObjectuiv(stamps[k], GL_QUERY_RESULT_AVAILABLE, &ready);
+    if (ready == GL_TRUE) glGetQueryObjectui64v(stamps[k], GL_QUERY_RESULT, &ns[k]);
+    check_gl("clock");
+    if (ns[k] == 0) return -1;
+  }
+  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
 }
 
 }  // namespace farcull

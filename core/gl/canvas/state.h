@@ -60,8 +60,8 @@ struct CanvasPass {
   }
 };
 
-/// The binding of the report in every program of the canvas.
-constexpr GLuint kReport = 3;
+/// Storage buffer bindings of the programs of the canvas.
+constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2, kReport = 3;
 
 /// A storage buffer for what the device reports. Every batch of draws and every dispatch writes an
 /// echo into it (GlEcho: a checksum of what it read). A dispatch also adds how many of its work
@@ -94,11 +94,8 @@ class CanvasReport {
   std::uint64_t bytes_in_all() const { return bytes_; }
 
  private:
-  struct Numbers {  // the uniforms of canvas_work.comp
-    std::uint32_t count, echo, serial, flags, bits;
-  };
   void dispatch(std::uint32_t step, const GlStore& from, std::size_t offset, std::size_t bytes,
-                std::uint32_t tag, const Numbers& numbers, std::uint32_t groups);
+                std::uint32_t tag, std::uint32_t count, std::uint32_t serial, std::uint32_t flags);
 
   const GlContext& context_;
   std::size_t block_, piece_;
@@ -109,9 +106,6 @@ class CanvasReport {
   std::uint32_t flags_ = 0;               // how many are packed
   std::uint64_t dispatches_ = 0, bytes_ = 0;
 };
-
-// Storage buffer bindings of canvas.vert and canvas.frag, beside kReport.
-constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2;
 
 /// A program of canvas.vert and canvas.frag, and the echo of its uniforms.
 struct CanvasProgram {
@@ -126,8 +120,6 @@ struct CanvasElements {
   std::vector<std::byte> bytes;  // the bytes that were sent to them
 };
 
-/// The canvas on the device: its programs, render targets and stores, and the state that a pass
-/// sets before it draws.
 struct CanvasState {
   const GlContext& context;
   DepthMode mode;
@@ -144,15 +136,15 @@ struct CanvasState {
   CanvasElements current;               // of the last begin()
   std::vector<CanvasElements> earlier;  // of earlier calls, for use again
   std::size_t per_chunk = 0;            // elements
-  std::size_t elements = 0;
-  std::size_t block = 0;        // bytes of data in a storage block
-  std::size_t alignment = 256;  // of a storage buffer range, in bytes
-  GLenum conservative = 0;      // GL capability for conservative rasterization; 0: not wanted
+  std::size_t block = 0;                // bytes of data in a storage block
+  std::size_t alignment = 256;          // of a storage buffer range, in bytes
+  GLenum conservative = 0;  // GL capability for conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
   Window window;
-  GlClock clock{2};  // when a pass or an upload begins and ends
+  bool ticks = false;             // the device has a clock (GL_TIMESTAMP)
+  std::array<GlQuery, 2> stamps;  // when a pass or an upload began and ended
   CanvasWork work;
 
   CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
@@ -181,12 +173,15 @@ struct CanvasState {
   void clear_depth(float value) const;
   void start(float clear) const;
   void set_verb(Verb verb, bool touching);
-  void set_conservative(bool on) const;
   void upload(const CanvasPass& laid, bool with_flags);
   void bind(const CanvasBatch& batch, const CanvasBatch* before) const;
   std::uint32_t echo(const CanvasPass& laid, const CanvasBatch& batch, const CanvasProgram& program,
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
+  void stamp(std::size_t place);
+  /// Milliseconds on the device between the two stamps; negative if unknown. The device must have
+  /// finished all commands. Throws Error if GL fails.
+  double stamped_ms() const;
 
   // begin() uploads the elements and prepares the targets. All four functions throw Error if the
   // device refuses or a command was lost; the contents of the device are then unknown.

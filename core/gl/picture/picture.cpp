@@ -172,10 +172,10 @@ Window deepened(Window window, const Scene& scene, std::span<const PictureTriang
 }  // namespace
 
 Image draw_picture(const GlContext& context, const Scene& scene, const Window& window,
-                   std::span<const PictureTriangle> triangles, const PictureSettings& settings) {
-  const int width = window.width * settings.samples, height = window.height * settings.samples;
+                   std::span<const PictureTriangle> triangles, int samples) {
+  const int width = window.width * samples, height = window.height * samples;
   const std::string size = std::to_string(width) + " x " + std::to_string(height) + " samples";
-  if (settings.samples < 1) throw std::logic_error("draw_picture: no samples");
+  if (samples < 1) throw std::logic_error("draw_picture: no samples");
   const GlCurrent current(context);
   if (std::max(width, height) >
       std::min(context.info().max_texture_size, context.info().max_viewport)) {
@@ -223,7 +223,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   check_gl("picture");
-  return filtered(texels, window.width, window.height, settings.samples);
+  return filtered(texels, window.width, window.height, samples);
 }
 
 }  // namespace farcull

@@ -12,8 +12,6 @@
 
 namespace farcull {
 
-// ---- a picture in memory: draw_picture() makes it, experiments compose and write it ----
-
 struct Rgba {
   std::uint8_t r = 0, g = 0, b = 0;
   std::uint8_t a = 255;  // 0: nothing is here; colours are not multiplied by it
@@ -43,9 +41,6 @@ inline void blend(Rgba& pixel, const Rgba& colour, double part) {
   pixel = {mix(pixel.r, colour.r), mix(pixel.g, colour.g), mix(pixel.b, colour.b), 255};
 }
 
-// ---- pictures of scenes ----
-
-/// A triangle of the scene and how it is drawn.
 struct PictureTriangle {
   std::uint32_t triangle = 0;
   Rgba colour;         // drawn opaque; its `a` is ignored
@@ -53,10 +48,6 @@ struct PictureTriangle {
   float outline = 0;   // px: the width of strips along its edges. So even a small, narrow or
                        // degenerate triangle covers a disc of this diameter
   float lift = 0;      // px by which it is moved towards the eye, in front of what it touches
-};
-
-struct PictureSettings {
-  int samples = 3;  // along each side of a pixel; the pixel is the mean of samples^2 samples
 };
 
 /// Largest width and height of a picture, px. Every OpenGL 4.3 can draw it with samples = 4.
@@ -73,9 +64,9 @@ Window picture_window(const View& view, std::span<const Box> boxes, int width, i
 /// is the first row of window.view, up is its second row, and a smaller depth is nearer. Alpha is
 /// the covered part of a pixel: 0 where no triangle is. Triangles that pixel space cannot resolve
 /// (clip.h) are left out. Memory does not grow with the number of triangles. Throws Error if the
-/// device refuses the size or reports an error.
+/// device refuses the size or reports an error. samples: along each side of a pixel; the pixel is
+/// the mean of samples^2 samples.
 Image draw_picture(const GlContext& context, const Scene& scene, const Window& window,
-                   std::span<const PictureTriangle> triangles,
-                   const PictureSettings& settings = {});
+                   std::span<const PictureTriangle> triangles, int samples = 3);
 
 }  // namespace farcull

@@ -21,25 +21,24 @@ Window picture_window(const View& view, std::span<const Box> boxes, int width, i
              .height = height,
              .lo = {},
              .hi = {}};
-  // The first turn moves the origin to the middle of the image, which may not be that of the boxes.
-  Box image = Box::empty();
-  for (int turn = 0; turn < 2; ++turn) {
-    image = Box::empty();
+  const auto pixels_of_boxes = [&] {
+    Box pixels = Box::empty();
     for (const Box& box : boxes) {
-      if (!box.is_empty()) image.add(pixel_box(out, box));
+      if (!box.is_empty()) pixels.add(pixel_box(out, box));
     }
-    if (turn == 0) out.origin += view.rows.transpose() * (0.5 * image.lo + 0.5 * image.hi);
-  }
+    return pixels;
+  };
+  // Moves the origin to the middle of the image, which may not be that of the boxes.
+  Box image = pixels_of_boxes();
+  out.origin += view.rows.transpose() * (0.5 * image.lo + 0.5 * image.hi);
+  image = pixels_of_boxes();
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
   const Vec3 size = image.hi - image.lo;
   const double room = 1 - 2 * margin;
   out.pixel_size = std::max(
       {size[0] / (room * width), size[1] / (room * height), 0x1p-45 * magnitude, 0x1p-960});
   out.map = view.rows / out.pixel_size;
-  Box pixels = Box::empty();
-  for (const Box& box : boxes) {
-    if (!box.is_empty()) pixels.add(pixel_box(out, box));
-  }
+  const Box pixels = pixels_of_boxes();
   out.lo = pixels.lo.array() - 1;
   out.hi = pixels.hi.array() + 1;
   if (!out.map.allFinite() || !out.lo.allFinite() || !out.hi.allFinite()) {

@@ -43,9 +43,6 @@ double sum_units(float got, double a, double b) {
   return units(got, s, (a - (s - part)) + (b - part));  // Knuth's two-sum
 }
 
-// Exact: a product of two floats fits a double.
-double product_units(float got, double a, double b) { return units(got, a * b, 0); }
-
 double quotient_units(float got, double a, double b) {
   const double exact = std::abs(a / b);
   if (a == 0 || exact < kSmallest)
@@ -111,7 +108,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const float sum = from_bits(r[0]), difference = from_bits(r[1]), product = from_bits(r[2]);
     out.rounded.add(sum_units(sum, a, b));
     out.rounded.add(sum_units(difference, a, -static_cast<double>(b)));
-    out.rounded.add(product_units(product, a, b));
+    out.rounded.add(units(product, double{a} * b, 0));  // exact: the product fits a double
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
@@ -133,7 +130,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
 
 void damage(float& x) { x = from_bits(std::bit_cast<std::uint32_t>(x) ^ 1u << 22); }
 
-void operations(const ProbeOptions& options, std::vector<ProbeResult>& out) {
+std::vector<ProbeResult> operations(const ProbeOptions& options) {
   const std::string loose = options.loose_text ? "#undef FAR_PRECISE\n#define FAR_PRECISE\n" : "";
   const GlProgram program =
       proxy_program("arithmetic", {loose, embedded::probe_frag}, {"FAR_ARITHMETIC"});
@@ -155,14 +152,14 @@ void operations(const ProbeOptions& options, std::vector<ProbeResult>& out) {
     judge(operands, words_of(results, 12 * kCases), found);
   }
   const std::string unit = "2^-23 of the result";
-  out.push_back(result("A4", "+ - *", found.rounded, options.exact_arithmetic ? 0 : 1, unit,
-                       "random operands of all sizes, cancelling ones, ends of binades"));
-  out.push_back(result("A4", "division", found.quotient, options.exact_arithmetic ? 0 : 2.5, unit,
-                       "divisors in [2^-126, 2^126], quotients below 2^126"));
-  out.push_back(result("A4", "min, max, abs, comparisons, buffer reads", found.wrong, 0,
-                       "wrong results", "neighbours, equal operands and zeros among them"));
-  out.push_back(result("A4", "precise", found.chain, options.exact_arithmetic ? 0 : 1, unit,
-                       "(a - b) + b and a * b - c, each step against what the step before gave"));
+  return {result("A4", "+ - *", found.rounded, options.exact_arithmetic ? 0 : 1, unit,
+                 "random operands of all sizes, cancelling ones, ends of binades"),
+          result("A4", "division", found.quotient, options.exact_arithmetic ? 0 : 2.5, unit,
+                 "divisors in [2^-126, 2^126], quotients below 2^126"),
+          result("A4", "min, max, abs, comparisons, buffer reads", found.wrong, 0, "wrong results",
+                 "neighbours, equal operands and zeros among them"),
+          result("A4", "precise", found.chain, options.exact_arithmetic ? 0 : 1, unit,
+                 "(a - b) + b and a * b - c, each step against what the step before gave")};
 }
 
 ProbeResult transport(const ProbeOptions& options) {
@@ -255,8 +252,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
 }  // namespace
 
 std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& options) {
-  std::vector<ProbeResult> out;
-  operations(options, out);
+  std::vector<ProbeResult> out = operations(options);
   out.push_back(transport(options));
   out.push_back(depth_map(options, DepthBuffer::float32));
   out.push_back(depth_map(options, DepthBuffer::fixed24));

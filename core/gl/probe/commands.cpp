@@ -1,8 +1,7 @@
 // Probes of A7, A8 and A10. A7: lost commands are noticed, and the next answer is right. A8: values
 // that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor repeat
-// an update. A missing or weak barrier shows only on devices that reorder commands, so these probes
-// can refute A8 only on the device that they run on. A10: the driver has no threads that are known
-// to damage memory.
+// an update; a weak barrier shows only on devices that reorder commands. A10: the driver has no
+// threads that are known to damage memory.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -14,11 +13,6 @@
 
 namespace farcull::probe {
 namespace {
-
-struct NamedFault {
-  DriverFaultKind kind;
-  const char* name;
-};
 
 ProbeResult faults(const std::string& name, const GlContext& context, const ProbeOptions& options,
                    const GlCanvasOptions& kind) {
@@ -34,20 +28,19 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
   pass.draws = {{0, 0}, {1, 0}, {2, 1}};
   pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 2}};
   const std::vector<std::uint8_t> right = {1, 0};
-  constexpr NamedFault kLostDraw = {DriverFaultKind::lost_draw, "lost draw"};
-  const std::vector<NamedFault> tried =
-      kind.query == QueryMode::flags
-          ? std::vector<NamedFault>{kLostDraw,
-                                    {DriverFaultKind::oversized_dispatch, "oversized dispatch"},
-                                    {DriverFaultKind::unfinished_item, "unfinished invocation"}}
-          : std::vector<NamedFault>{kLostDraw,
-                                    {DriverFaultKind::lost_query, "lost query"},
-                                    {DriverFaultKind::blind_queries, "blind query"}};
+  using Kind = DriverFaultKind;
+  using Named = std::pair<Kind, std::string>;
+  const bool flags = kind.query == QueryMode::flags;
+  const Named tried[] = {{Kind::lost_draw, "lost draw"},
+                         flags ? Named(Kind::oversized_dispatch, "oversized dispatch")
+                               : Named(Kind::lost_query, "lost query"),
+                         flags ? Named(Kind::unfinished_item, "unfinished invocation")
+                               : Named(Kind::blind_queries, "blind query")};
   Worst unnoticed;
   std::string note, refusal;
-  for (const NamedFault& f : tried) {
+  for (const auto& [fault_kind, fault_name] : tried) {
     std::optional<DriverFault> fault;
-    if (!options.skipped_faults) fault.emplace(f.kind);
+    if (!options.skipped_faults) fault.emplace(fault_kind);
     GlCanvas canvas(context, DepthMode::fragment, depth_solid(), kind);
     canvas.begin(window(64, 64), drawables);
     if (fault) fault->strike();
@@ -68,8 +61,8 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
     }
     unnoticed.count(!noticed);
     unnoticed.count(!recovered);
-    note += (note.empty() ? "" : ", ") + std::string(f.name) +
-            (noticed ? " noticed" : " NOT noticed") + (recovered ? "" : " (the next pass FAILS)");
+    note += (note.empty() ? "" : ", ") + fault_name + (noticed ? " noticed" : " NOT noticed") +
+            (recovered ? "" : " (the next pass FAILS)");
   }
   return result("A7", name, unnoticed, 0, "unnoticed",
                 note + "; the pass after each is counted, too" + refusal);

@@ -30,87 +30,67 @@ std::vector<float> random_depths(Random& random, const std::vector<float>& besid
   return out;
 }
 
-// Layers of one proxy per pixel, which are stored with LESS and asked with GEQUAL.
-class DepthLayers {
- public:
-  static constexpr std::size_t kLayers = 4;
+// One proxy per pixel, at these depths.
+std::vector<Proxy> proxies_at(const std::vector<float>& depths) {
+  std::vector<Proxy> out = pixel_proxies(kSide);
+  for (std::size_t i = 0; i < kPixels; ++i) out[i].solid[4][2] = depths[i];
+  return out;
+}
 
-  DepthLayers(Random& random, DepthBuffer format)
-      : target_(kSide, kSide, format),
-        program_(proxy_program("depth", {embedded::probe_frag}, {"FAR_DEPTH"})) {
-    for (std::vector<float>& layer : depths_) {
-      layer = random_depths(random, &layer == &depths_[0] ? std::vector<float>() : depths_[0]);
-      const std::vector<Proxy> one = proxies_at(layer);
-      proxies_.insert(proxies_.end(), one.begin(), one.end());
-    }
-    target_.upload(proxies_);
-  }
-
-  const std::vector<float>& depths(std::size_t layer) const { return depths_[layer]; }
-  /// The depths that the buffer holds after `count` layers.
-  std::vector<std::uint32_t> store(std::size_t first, std::size_t count) {
-    target_.start();
-    Target::depth_test(GL_LESS, true);
-    target_.use(program_);
-    target_.draw(first * kPixels, count * kPixels);
-    return target_.depths();
-  }
-  /// Stores all layers, then asks a proxy at each of these depths. Pixel i of the result is i + 1
-  /// where the proxy passed.
-  std::vector<std::uint32_t> ask(const std::vector<float>& asked) {
-    store(0, kLayers);
-    target_.upload(proxies_at(asked));
-    Target::depth_test(GL_GEQUAL, false);
-    const GLuint zero[4] = {0, 0, 0, 0};
-    glClearBufferuiv(GL_COLOR, 0, zero);
-    target_.draw(0, kPixels);
-    std::vector<std::uint32_t> passed = target_.colour();
-    target_.upload(proxies_);
-    return passed;
-  }
-
- private:
-  static std::vector<Proxy> proxies_at(const std::vector<float>& depths) {
-    std::vector<Proxy> out = pixel_proxies(kSide);
-    for (std::size_t i = 0; i < kPixels; ++i) out[i].solid[4][2] = depths[i];
-    return out;
-  }
-
-  Target target_;
-  GlProgram program_;
-  std::array<std::vector<float>, kLayers> depths_;
-  std::vector<Proxy> proxies_;
-};
-
+// Layers of one proxy per pixel are stored with LESS and asked with GEQUAL.
 ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
-  constexpr std::size_t kLayers = DepthLayers::kLayers;
+  constexpr std::size_t kLayers = 4;
   const bool floats = format == DepthBuffer::float32;
   Random random(options.seed + 7);
-  DepthLayers layers(random, format);
+  Target target(kSide, kSide, format);
+  const GlProgram program = proxy_program("depth", {embedded::probe_frag}, {"FAR_DEPTH"});
+  std::array<std::vector<float>, kLayers> layers;
+  std::vector<Proxy> proxies;
+  for (std::vector<float>& layer : layers) {
+    layer = random_depths(random, &layer == &layers[0] ? std::vector<float>() : layers[0]);
+    const std::vector<Proxy> one = proxies_at(layer);
+    proxies.insert(proxies.end(), one.begin(), one.end());
+  }
+  target.upload(proxies);
+  // Returns the depths that the buffer holds after `count` layers.
+  const auto store = [&](std::size_t first, std::size_t count) {
+    target.start();
+    Target::depth_test(GL_LESS, true);
+    target.use(program);
+    target.draw(first * kPixels, count * kPixels);
+    return target.depths();
+  };
   // A layer drawn alone shows how the buffer rounds it. When all are drawn, the least must stay.
   std::vector<std::uint32_t> least(kPixels, 0xffffffff);
   std::vector<float> nearest(kPixels, 1);
   Worst wrong;
   for (std::size_t k = 0; k < kLayers; ++k) {
-    const std::vector<std::uint32_t> alone = layers.store(k, 1);
-    const std::vector<float>& depths = layers.depths(k);
+    const std::vector<std::uint32_t> alone = store(k, 1);
     for (std::size_t i = 0; i < kPixels; ++i) {
-      if (floats) wrong.count(alone[i] != std::bit_cast<std::uint32_t>(depths[i]));
+      if (floats) wrong.count(alone[i] != std::bit_cast<std::uint32_t>(layers[k][i]));
       least[i] = std::min(least[i], alone[i]);
-      nearest[i] = std::min(nearest[i], depths[i]);
+      nearest[i] = std::min(nearest[i], layers[k][i]);
     }
   }
-  const std::vector<std::uint32_t> kept = layers.store(0, kLayers);
+  const std::vector<std::uint32_t> kept = store(0, kLayers);
   for (std::size_t i = 0; i < kPixels; ++i) wrong.count(kept[i] != least[i]);
 
   std::uint64_t extra = 0;
   for (std::size_t k = 0; k < kLayers + 1; ++k) {
     // In the last round each pixel asks at its stored depth: GEQUAL must pass equal depths.
-    std::vector<float> asked = k < kLayers ? layers.depths(k) : nearest;
+    std::vector<float> asked = k < kLayers ? layers[k] : nearest;
     if (k < kLayers) {
       for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
     }
-    const std::vector<std::uint32_t> passed = layers.ask(asked);
+    // Stores all layers, then asks a proxy at each depth. Pixel i is i + 1 where the proxy passed.
+    store(0, kLayers);
+    target.upload(proxies_at(asked));
+    Target::depth_test(GL_GEQUAL, false);
+    const GLuint zero[4] = {0, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, zero);
+    target.draw(0, kPixels);
+    const std::vector<std::uint32_t> passed = target.colour();
+    target.upload(proxies);
     for (std::size_t i = 0; i < kPixels; ++i) {
       const bool pass = passed[i] == i + 1, must = asked[i] >= nearest[i];
       extra += pass && !must;

@@ -249,11 +249,9 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
     std::vector<Proxy> proxies;
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
-        const auto& a = points[static_cast<std::size_t>(j) * (n + 1) + i];
-        const auto& b = points[static_cast<std::size_t>(j) * (n + 1) + i + 1];
-        const auto& c = points[static_cast<std::size_t>(j + 1) * (n + 1) + i + 1];
-        const auto& d = points[static_cast<std::size_t>(j + 1) * (n + 1) + i];
-        proxies.push_back(quad({a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]}));
+        const auto* const a = &points[static_cast<std::size_t>(j) * (n + 1) + i];
+        const auto &b = a[1], &c = a[n + 2], &d = a[n + 1];
+        proxies.push_back(quad({(*a)[0], (*a)[1], b[0], b[1], c[0], c[1], d[0], d[1]}));
       }
     }
     const std::vector<std::uint32_t> counts = coverage.draw(proxies);
@@ -310,21 +308,17 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
 
   Worst near;
   double near_of[4] = {};
-  {
-    Coverage coverage(256, 256, options);
-    for (std::size_t d = 0; d < 4; ++d) {
-      Worst worst;
-      for (int round = 0; round < rounds(options, 12); ++round)
-        short_edges(coverage, random, kDirections[d], reach, worst);
-      near_of[d] = worst.value;
-      near.value = std::max(near.value, worst.value);
-      near.samples += worst.samples;
-    }
+  Coverage small(256, 256, options);
+  for (std::size_t d = 0; d < 4; ++d) {
+    Worst worst;
+    for (int round = 0; round < rounds(options, 12); ++round)
+      short_edges(small, random, kDirections[d], reach, worst);
+    near_of[d] = worst.value;
+    near.value = std::max(near.value, worst.value);
+    near.samples += worst.samples;
   }
-  std::vector<ProbeResult> out;
   const int side = largest_side(context);
   const std::string strips = size(side, 64) + ", " + size(64, side) + " and 2000 x 2000";
-  // Reports the target that comes nearest to its own bound.
   Tightest far, large;
   double displacement = 0;
   for (const auto& [width, height] : {std::pair{side, 64}, std::pair{64, side}, {2000, 2000}}) {
@@ -342,17 +336,15 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     far.add(edge, vertex);
     large.add(whole, snap + vertex);
   }
-  out.push_back(result("A1", "vertex arithmetic", far.worst, far.bound, "px",
-                       "edges of 2 to 3 px all over targets of " + strips + "; displacement " +
-                           px(displacement) + " less that of A2, per axis"));
-  out.push_back(result("A1", "sides of large proxies", large.worst, large.bound, "px",
-                       "all pixels of quadrilaterals as large as those targets; with snapping"));
-  out.push_back(result("A2", "snapping", near, snap + vertex_bound(options, 256), "px",
-                       "edges near pixel centres, 256 x 256: upright " + px(near_of[0]) +
-                           ", level " + px(near_of[1]) + ", 45 degrees " + px(near_of[2]) +
-                           ", any " + px(near_of[3]) + ", per axis, looked for up to " +
-                           px(reach)));
-  return out;
+  return {result("A1", "vertex arithmetic", far.worst, far.bound, "px",
+                 "edges of 2 to 3 px all over targets of " + strips + "; displacement " +
+                     px(displacement) + " less that of A2, per axis"),
+          result("A1", "sides of large proxies", large.worst, large.bound, "px",
+                 "all pixels of quadrilaterals as large as those targets; with snapping"),
+          result("A2", "snapping", near, snap + vertex_bound(options, 256), "px",
+                 "edges near pixel centres, 256 x 256: upright " + px(near_of[0]) + ", level " +
+                     px(near_of[1]) + ", 45 degrees " + px(near_of[2]) + ", any " + px(near_of[3]) +
+                     ", per axis, looked for up to " + px(reach))};
 }
 
 std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& options) {
@@ -360,12 +352,7 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
   const double snap = snap_bound(context, {});
   Coverage small(1024, 1024, options);
   const double margin = snap + vertex_bound({}, 1024);
-  std::vector<ProbeResult> out;
-  out.push_back(
-      result("A3", "split quadrilaterals cover once",
-             split_quads(small, random, margin, rounds(options, 10)), 0, "pixels",
-             "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
-             "pixels inside that were not covered once"));
+  const Worst split = split_quads(small, random, margin, rounds(options, 10));
   Worst wrong, misplaced;
   const int side = largest_side(context);
   for (const auto& [width, height] : {std::pair{1024, 1024}, {side, 64}, {64, side}}) {
@@ -377,18 +364,21 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
     const std::vector<std::uint32_t> place = large.target().colour();
     for (std::size_t i = 0; i < place.size(); ++i) misplaced.count(place[i] != i + 1);
   }
-  out.push_back(
-      result("A3", "large quadrilaterals cover once", wrong, 0, "pixels",
-             "as large as targets of 1024 x 1024, " + size(side, 64) + " and " + size(64, side)));
   Coverage medium(512, 512, options);
-  out.push_back(result("A3", "abutting triangles cover once", abutting_mesh(medium, random), 0,
-                       "pixels", "shaken meshes with cells of 0.7 to 9.1 px"));
-  out.push_back(result("A3", "no area covers nothing",
-                       zero_area(medium, random, options.fat_zero_area), 0, "fragments",
-                       "triangles that are points and segments, half of them on pixel centres"));
-  out.push_back(result("A9", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
-                       "every pixel of the same three targets"));
-  return out;
+  const Worst mesh = abutting_mesh(medium, random);
+  const Worst flat = zero_area(medium, random, options.fat_zero_area);
+  return {
+      result("A3", "split quadrilaterals cover once", split, 0, "pixels",
+             "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
+             "pixels inside that were not covered once"),
+      result("A3", "large quadrilaterals cover once", wrong, 0, "pixels",
+             "as large as targets of 1024 x 1024, " + size(side, 64) + " and " + size(64, side)),
+      result("A3", "abutting triangles cover once", mesh, 0, "pixels",
+             "shaken meshes with cells of 0.7 to 9.1 px"),
+      result("A3", "no area covers nothing", flat, 0, "fragments",
+             "triangles that are points and segments, half of them on pixel centres"),
+      result("A9", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
+             "every pixel of the same three targets")};
 }
 
 }  // namespace farcull::probe

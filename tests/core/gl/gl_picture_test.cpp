@@ -21,9 +21,9 @@ Window window(const Vec3& middle = Vec3::Zero()) {
   return picture_window(view, boxes, 20, 20, 0, "test");
 }
 
-Image draw(const Scene& scene, const std::vector<PictureTriangle>& triangles,
-           const PictureSettings& settings = {}, const Vec3& middle = Vec3::Zero()) {
-  return draw_picture(lab::context(), scene, window(middle), triangles, settings);
+Image draw(const Scene& scene, const std::vector<PictureTriangle>& triangles, int samples = 3,
+           const Vec3& middle = Vec3::Zero()) {
+  return draw_picture(lab::context(), scene, window(middle), triangles, samples);
 }
 
 std::array<Vec3, 3> square_half(double z) {
@@ -81,7 +81,7 @@ TEST(GlPicture, LiftDecidesBetweenTrianglesInOnePlace) {
 
 TEST(GlPicture, RefusesASizeBeyondTheDevice) {
   const Scene scene = scene_of({square_half(0)});
-  EXPECT_THROW(draw(scene, {}, {.samples = lab::context().info().max_texture_size}), Error);
+  EXPECT_THROW(draw(scene, {}, lab::context().info().max_texture_size), Error);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(NearBounds, EncloseTheDistanceOfTwoTriangles) {
     const std::array<Triangle, 2> pair = random_pair(random);
     const Scene scene = scene_of(pair);
     const SceneTrees trees(scene, 1);
-    memory.forget();
+    memory = SearchMemory();
     Search search = begin_search(trees, {0, 1}, HUGE_VAL, nullptr, memory);
     go_on(trees, 100, search, memory);
     ASSERT_EQ(search.kept.size(), 1u);
