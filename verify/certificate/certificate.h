@@ -24,6 +24,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -107,6 +108,15 @@ struct Certificate {
 
   bool operator==(const Certificate&) const = default;
 };
+
+/// The counts of the claims by their names in a certificate.
+inline constexpr std::pair<const char*, std::uint64_t Certificate::Claims::*> kClaims[] = {
+    {"box_pairs", &Certificate::Claims::box_pairs},
+    {"kept", &Certificate::Claims::kept},
+    {"culled", &Certificate::Claims::culled},
+    {"separated", &Certificate::Claims::separated},
+    {"neighbours", &Certificate::Claims::neighbours},
+    {"meeting", &Certificate::Claims::meeting}};
 
 constexpr std::uint8_t kMeets = 38;
 constexpr std::uint8_t kNeighbours = 39;
