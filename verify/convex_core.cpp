@@ -209,7 +209,17 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   std::vector<Corners> ordered;
   for (const std::uint32_t t : tree_.order) ordered.push_back(triangles_[t]);
   triangles_ = std::move(ordered);
-  find_convex();
+  constexpr double kMostTests = 3e7;
+  if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : corners_) middle += p / double(corners_.size());
+  // A thin object needs more room for rounding.
+  for (const double inward : {1e-12, 1e-9, 1e-6}) {
+    convex_.clear();
+    for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
+    if (is_core(*this, triangles_, middle, {}, convex_)) return;
+  }
+  convex_.clear();
 }
 
 bool ClosedObject::has(const Vec3& point) const {
@@ -252,20 +262,6 @@ bool ClosedObject::has_not(const Vec3& point) const {
   if ((point.array() < box_.lo.array()).any() || (point.array() > box_.hi.array()).any())
     return true;
   return overlap_at(scene_, object_, point, surface_) == Overlap::no;
-}
-
-void ClosedObject::find_convex() {
-  constexpr double kMostTests = 3e7;
-  if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : corners_) middle += p / double(corners_.size());
-  // A thin object needs more room for rounding.
-  for (const double inward : {1e-12, 1e-9, 1e-6}) {
-    convex_.clear();
-    for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
-    if (is_core(*this, triangles_, middle, {}, convex_)) return;
-  }
-  convex_.clear();
 }
 
 std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,

@@ -9,7 +9,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <deque>
+#include <memory>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -33,15 +33,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-mpq_class power_of_two(int exponent) {
-  mpz_class out = 1;
-  out <<= static_cast<unsigned>(std::abs(exponent));
-  return exponent >= 0 ? mpq_class(out) : mpq_class(1, out);
-}
-
-// The value of a double as a rational; 2^1024 for infinity.
-mpq_class rational(double x) { return std::isfinite(x) ? mpq_class(x) : power_of_two(1024); }
-
 bool has(const Object& object, std::uint32_t triangle) {
   return triangle >= object.first_triangle &&
          triangle - object.first_triangle < object.triangle_count;
@@ -62,13 +53,10 @@ class Undecided {
   /// Begins with the pairs of two objects (self: of one object), which have this threshold. answer:
   /// the answer about these objects, if there is one; empty with `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
-    now_ = {threshold, self, answer};
-    stored_ = false;
+    now_ = std::make_shared<const Asked>(Asked{threshold, self, answer});
   }
   void add(const TrianglePair& pair) {
-    if (!stored_) thresholds_.push_back(now_);
-    stored_ = true;
-    pairs_.push_back({pair, &thresholds_.back()});
+    pairs_.push_back({pair, now_});
     if (pairs_.size() == kChunk) decide();
   }
   void decide() {
@@ -79,8 +67,6 @@ class Undecided {
     });
     for (std::size_t k = 0; k < pairs_.size(); ++k) count(pairs_[k].pair, classes[k]);
     pairs_.clear();
-    thresholds_.clear();
-    stored_ = false;
   }
 
  private:
@@ -93,7 +79,7 @@ class Undecided {
   };
   struct Pair {
     TrianglePair pair;
-    const Asked* asked;  // of thresholds_
+    std::shared_ptr<const Asked> asked;
   };
 
   Class class_of(const Pair& pair) const {
@@ -130,9 +116,7 @@ class Undecided {
   const Scene& scene_;
   unsigned threads_;
   DistanceAccounting& result_;
-  Asked now_;
-  bool stored_ = false;           // now_ is in thresholds_
-  std::deque<Asked> thresholds_;  // pairs_ point to these
+  std::shared_ptr<const Asked> now_;
   std::vector<Pair> pairs_;
 };
 
@@ -255,7 +239,7 @@ bool is_rounded_root(double distance, const Fraction& square) {
   const bool even = (std::bit_cast<std::uint64_t>(distance) & 1) == 0;
   // Compares the root with the middle between `distance` and `next`, by squares.
   const auto beside = [&](double next) {
-    const mpq_class middle = (rational(distance) + rational(next)) / 2;
+    const mpq_class middle = (integer::rational(distance) + integer::rational(next)) / 2;
     return cmp(squared, middle * middle);
   };
   if (std::isfinite(distance)) {
@@ -341,13 +325,6 @@ Threshold DistanceClaims::threshold(std::uint32_t a, std::uint32_t b) const {
   return {Length(most), before ? Bound::at_most : Bound::below};
 }
 
-bool DistanceClaims::wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const {
-  const bool has_answer = question_.inside && question_.kind != DistanceQuestion::Kind::all &&
-                          claim.a != claim.b && squared.over != 0;
-  if (!has_answer) return claim.inside != InsideClaim::unknown;
-  return insides_.which(claim.a, claim.b) != claim.inside;
-}
-
 bool DistanceClaims::wrong(std::size_t answer) const {
   const ClaimedDistance& x = answers_[answer];
   const std::optional<Fraction>& squared = squares_[answer];
@@ -359,7 +336,9 @@ bool DistanceClaims::wrong(std::size_t answer) const {
   if (exact.squared != *squared || exact.features != x.features ||
       !is_rounded(x.points[0], exact.points[0]) || !is_rounded(x.points[1], exact.points[1]))
     return true;
-  if (wrong_inside(x, *squared)) return true;
+  const bool has_inside = question_.inside && question_.kind != DistanceQuestion::Kind::all &&
+                          x.a != x.b && squared->over != 0;
+  if (x.inside != (has_inside ? insides_.which(x.a, x.b) : InsideClaim::unknown)) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
   // The answer is wrong if neither object has the other one among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {

@@ -131,7 +131,6 @@ class DistanceClaims {
   };
   void find_farthest();
   bool wrong(std::size_t answer) const;
-  bool wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const;
 
   const Scene& scene_;
   std::span<const ClaimedDistance> answers_;

@@ -133,11 +133,6 @@ class FrameDecider {
   std::size_t decided() const { return decided_; }
 
  private:
-  std::vector<PairAnswer> answers_with_kept(const Scene& scene,
-                                            std::span<const TrianglePair> candidates,
-                                            const MovedCorners& moved,
-                                            const ExactQuestion& question);
-
   std::optional<std::uint64_t> frame_;  // frame of the answers
   double clearance_ = 0;
   bool neighbours_ = true;

@@ -29,8 +29,6 @@ enum class EvidenceFault : std::uint8_t {
   neighbours,  // neighbours meet only in what they share, but are claimed to meet
 };
 
-bool refutes(EvidenceFault finding) { return finding >= EvidenceFault::culled_meets; }
-
 enum class Kind : std::uint8_t { separated, neighbours, meeting };
 
 struct Decision {
@@ -165,7 +163,7 @@ class Tally {
     if (decision.finding == EvidenceFault::as_claimed) return;
     // Names the first pair that refutes. As long as there is none, names the first that is not
     // proved.
-    const bool refuted = refutes(decision.finding);
+    const bool refuted = decision.finding >= EvidenceFault::culled_meets;
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
     result_.pair = pair;

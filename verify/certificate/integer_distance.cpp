@@ -22,30 +22,20 @@ using namespace integer;
 
 namespace {
 
-constexpr int kFeatures = 7;
-constexpr int kFace = 6;
-
-bool is_corner(int feature) { return feature < 3; }
+constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
 /// Constructs the only two points of these features that can be nearest points, if no earlier pair
 /// of features has nearest points. False if there are no such points.
-bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int of_a, int of_b) {
-  const auto& [a, b, exponent] = pair;
-  if (is_corner(of_a)) {
+bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
+               int of_a, int of_b) {
+  if (of_a < kFirstEdge) {
     on_a.corner(a, of_a);
-    if (is_corner(of_b)) return on_b.corner(b, of_b);
+    if (of_b < kFirstEdge) return on_b.corner(b, of_b);
     if (of_b == kFace) return on_b.foot_on_plane(b, a[of_a]);
     return on_b.foot_on_edge(b, of_b - 3, a[of_a]);
   }
-  if (is_corner(of_b)) {
-    on_b.corner(b, of_b);
-    if (of_a == kFace) return on_a.foot_on_plane(a, b[of_b]);
-    return on_a.foot_on_edge(a, of_a - 3, b[of_b]);
-  }
-  if (of_a == kFace) {
-    return of_b != kFace && on_a.edge_and_plane(b, of_b - 3, a) &&
-           on_b.edge_and_plane(b, of_b - 3, a);
-  }
+  if (of_a == kFace && of_b == kFace) return false;
+  if (of_b < kFirstEdge || of_a == kFace) return construct(on_b, on_a, b, a, of_b, of_a);
   if (of_b == kFace)
     return on_a.edge_and_plane(a, of_a - 3, b) && on_b.edge_and_plane(a, of_a - 3, b);
   return on_a.edge_and_edge(a, of_a - 3, b, of_b - 3) &&
@@ -58,10 +48,6 @@ bool is_rounded(double x, const mpq_class& exact) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
   const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
-  // 2^1024 replaces infinity.
-  const auto rational = [](double y) {
-    return std::isfinite(y) ? mpq_class(y) : mpq_class((y > 0 ? 1 : -1) * (mpz_class(1) << 1024));
-  };
   const auto beside = [&](double next) {
     return cmp(exact, mpq_class((rational(x) + rational(next)) / 2));
   };
@@ -94,10 +80,9 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
     for (int of_b = 0; of_b < kFeatures; ++of_b) {
       // The construction is not trusted: the points count only if they lie in the triangles and are
       // proved nearest.
-      if (!construct(on_a, on_b, pair, of_a, of_b) || !on_a.is_nearest(on_b, pair.a, pair.b) ||
-          !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b)) {
+      if (!construct(on_a, on_b, pair.a, pair.b, of_a, of_b) ||
+          !on_a.is_nearest(on_b, pair.a, pair.b) || !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b))
         continue;
-      }
       IntegerDistance out;
       on_a.squared_distance(on_b, out.squared.over, out.squared.under);
       if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
@@ -125,12 +110,7 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
   };
   const int likely = likely_direction(a, b, length.above);
   if (shows(likely)) return true;
-  for (int n = 0; n < kDirections; ++n) {
-    // The directions of the lowest degree first.
-    const int direction = n < 9 ? 29 + n : n - 9;
-    if (direction != likely && shows(direction)) return true;
-  }
-  return false;
+  return std::ranges::any_of(kByDegree, [&](int d) { return d != likely && shows(d); });
 }
 
 enum class IntegerSurface : std::uint8_t { open, closed, oriented };
@@ -141,8 +121,6 @@ enum class IntegerSurface : std::uint8_t { open, closed, oriented };
 // is that of its coefficient of lowest degree that is not 0.
 
 namespace {
-
-using integer::BigVector;
 
 /// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
 /// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ in
@@ -157,8 +135,8 @@ int side_of_edge(const BigVector& p, const BigVector& q) {
 mpz_class determinant(const std::array<BigVector, 3>& t) {
   BigVector product;
   mpz_class out;
-  integer::cross(product, t[1], t[2]);
-  integer::dot(out, t[0], product);
+  cross(product, t[1], t[2]);
+  dot(out, t[0], product);
   return out;
 }
 
@@ -180,7 +158,7 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
     if (!may_cross(t, x)) continue;
-    const integer::ScaledPair pair = integer::scaled({x, x, x}, t);  // pair.b: t relative to x
+    const ScaledPair pair = scaled({x, x, x}, t);  // pair.b: t relative to x
     const int side = side_of_edge(pair.b[0], pair.b[1]);
     if (side == 0 || side_of_edge(pair.b[1], pair.b[2]) != side ||
         side_of_edge(pair.b[2], pair.b[0]) != side) {
@@ -199,27 +177,15 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
 using Place = std::array<double, 3>;
 
 IntegerSurface mesh_of(const Scene& scene, const Object& object) {
-  std::vector<Place> places;  // each once
-  const auto place_of = [](const Vec3& p) {
-    return Place{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};  // no -0.0
-  };
+  std::vector<std::tuple<Place, Place, bool>> edges;  // lower end, upper end, upwards
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    for (const Vec3& p : scene.corners(object.first_triangle + k)) places.push_back(place_of(p));
-  }
-  std::ranges::sort(places);
-  const auto rest = std::ranges::unique(places);
-  places.erase(rest.begin(), rest.end());
-  std::vector<std::tuple<std::size_t, std::size_t, bool>> edges;  // lower end, upper end, upwards
-  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    std::array<std::size_t, 3> at{};
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    std::array<Place, 3> at;
+    for (std::size_t i = 0; i < 3; ++i)
+      at[i] = {t[i].x() + 0.0, t[i].y() + 0.0, t[i].z() + 0.0};  // no -0.0
     for (std::size_t i = 0; i < 3; ++i) {
-      at[i] = static_cast<std::size_t>(std::ranges::lower_bound(places, place_of(t[i])) -
-                                       places.begin());
-    }
-    if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t from = at[i], to = at[(i + 1) % 3];
+      const Place &from = at[i], &to = at[(i + 1) % 3];
       edges.emplace_back(std::min(from, to), std::max(from, to), from < to);
     }
   }

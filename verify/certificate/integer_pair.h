@@ -33,6 +33,13 @@ namespace farcull {
 ///   29 + 3i + j w, from corner i of a to corner j of b
 constexpr int kDirections = 38;
 
+/// All directions, those of the lowest degree first: 29 .. 37, 0 .. 10, 11 .. 28.
+inline constexpr std::array<int, kDirections> kByDegree = [] {
+  std::array<int, kDirections> out{};
+  for (int n = 0; n < kDirections; ++n) out[n] = n < 9 ? 29 + n : n - 9;
+  return out;
+}();
+
 /// A pair in integers. Preconditions: finite coordinates; subnormals are not flushed to zero.
 class IntegerPair {
  public:
@@ -69,7 +76,8 @@ class IntegerPair {
   struct Big;
   Big& big();
 
-  bool only_shared_by(int direction);
+  template <class Use>
+  bool with_direction(int direction, double clearance, const Use& use);
 
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;

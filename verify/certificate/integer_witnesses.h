@@ -25,25 +25,18 @@ struct Scratch {
 template <class Integer>
 void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                     int direction) {
-  if (direction < 2) {
-    edge(s.e, direction == 0 ? a : b, 0);
-    edge(s.f, direction == 0 ? a : b, 1);
+  const auto product = [&](const Corners<Integer>& of_e, int e, const Corners<Integer>& of_f,
+                           int f) {
+    edge(s.e, of_e, e);
+    edge(s.f, of_f, f);
     cross(s.d, s.e, s.f);
-    return;
-  }
+  };
+  if (direction < 2) return product(direction == 0 ? a : b, 0, direction == 0 ? a : b, 1);
   const int family = (direction - 2) / 9;
   const int i = (direction - 2) % 9 / 3;
   const int j = (direction - 2) % 3;
-  if (family == 0) {
-    edge(s.e, a, i);
-    edge(s.f, b, j);
-    cross(s.d, s.e, s.f);
-    return;
-  }
-  if (family == 3) {
-    minus(s.d, b[j], a[i]);
-    return;
-  }
+  if (family == 0) return product(a, i, b, j);
+  if (family == 3) return minus(s.d, b[j], a[i]);
   minus(s.w, b[j], a[i]);
   if (family == 1) {
     edge(s.e, a, i);
@@ -132,8 +125,7 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   const bool a_below = *a_hi <= *b_lo;
   if (!a_below && !(*b_hi <= *a_lo)) return false;
   const Integer plane = a_below ? *a_hi : *a_lo;  // a shared corner lies in it
-  unsigned in_a = 0;
-  unsigned in_b = 0;
+  unsigned in_a = 0, in_b = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.on_a[i] == plane) in_a |= 1u << i;
     if (s.on_b[i] == plane) in_b |= 1u << i;
@@ -365,9 +357,7 @@ bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, c
                     const Test& test) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      on_a.corner(a, i);
-      on_b.corner(b, j);
-      if (test()) return true;
+      if (on_a.corner(a, i) && on_b.corner(b, j) && test()) return true;
     }
   }
   for (int i = 0; i < 3; ++i) {

@@ -96,6 +96,11 @@ inline void scale(mpz_class& to, double value, int exponent) {
   if (x.mantissa != 0) to <<= x.exponent - exponent;
 }
 
+/// The value of a double as a rational; 2^1024 replaces infinity.
+inline mpq_class rational(double x) {
+  return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
+}
+
 /// Two triangles in integers: a corner of the input is the first corner of a, plus 2^exponent times
 /// the integers.
 struct ScaledPair {
@@ -113,9 +118,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   };
   include(length);
   for (const auto* t : {&a, &b}) {
-    for (const Vec3& p : *t) {
-      for (int k = 0; k < 3; ++k) include(p[k]);
-    }
+    for (const Vec3& p : *t) std::ranges::for_each(p, include);
   }
   ScaledPair out;
   if (least != std::numeric_limits<int>::max()) out.exponent = least;

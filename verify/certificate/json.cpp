@@ -22,14 +22,6 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile 
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
 
-/// The text as printable ASCII of at most `most` characters, for a message.
-std::string printable(std::string_view text, std::size_t most) {
-  std::string out;
-  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
-  if (text.size() > most) out += "...";
-  return out;
-}
-
 /// Reads the syntax alone. Bounds the number of values and the depth before anything is built, so
 /// that memory stays in proportion to the text.
 class Syntax : public nlohmann::json_sax<Json> {
