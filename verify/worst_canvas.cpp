@@ -136,22 +136,6 @@ float WorstCanvas::held(float z, Verb verb) const {
   return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }
 
-template <class Visit>
-void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) const {
-  const std::array<float, 12>& t = drawables_->triangles[element];
-  const Point corners[] = {{t[0], t[1]}, {t[4], t[5]}, {t[8], t[9]}};
-  const double area = cross(corners[0], corners[1], corners[2]);
-  if (area == 0) return;
-  for_pixels(window_, corners, [&](std::size_t pixel, const Point& p) {
-    const double wa = cross(corners[1], corners[2], p) / area;
-    const double wb = cross(corners[2], corners[0], p) / area;
-    const double wc = cross(corners[0], corners[1], p) / area;
-    if (wa <= 0 || wb <= 0 || wc <= 0) return;
-    const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
-    visit(pixel, z, held(z));
-  });
-}
-
 // True if the pixel centre is inside the proxy for all roundings that the assumptions allow.
 bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, double cy) const {
   const Point c = {cx, cy};
@@ -174,8 +158,30 @@ bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, doub
   return true;
 }
 
+// Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
+// is the value that the depth buffer stores for it, or compares with its own.
 template <class Visit>
-void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const {
+void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+  if (element == kEverywhere) {
+    const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) visit(pixel, 0, 0);
+    return;
+  }
+  if (drawables_->mode == DepthMode::fixed) {
+    const std::array<float, 12>& t = drawables_->triangles[element];
+    const Point corners[] = {{t[0], t[1]}, {t[4], t[5]}, {t[8], t[9]}};
+    const double area = cross(corners[0], corners[1], corners[2]);
+    if (area == 0) return;
+    for_pixels(window_, corners, [&](std::size_t pixel, const Point& p) {
+      const double wa = cross(corners[1], corners[2], p) / area;
+      const double wb = cross(corners[2], corners[0], p) / area;
+      const double wc = cross(corners[0], corners[1], p) / area;
+      if (wa <= 0 || wb <= 0 || wc <= 0) return;
+      const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
+      visit(pixel, z, held(z));
+    });
+    return;
+  }
   const Proxy& proxy = drawables_->proxies[element];
   Point nominal[4];
   for (int i = 0; i < 4; ++i) nominal[i] = {proxy.corners[2 * i], proxy.corners[2 * i + 1]};
@@ -189,20 +195,6 @@ void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit&
     const float z = verb == Verb::store ? entry : exit;
     visit(pixel, z, held(z, verb));
   });
-}
-
-// Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
-// is the value that the depth buffer stores for it, or compares with its own.
-template <class Visit>
-void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
-  if (element == kEverywhere) {
-    const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) visit(pixel, 0, 0);
-  } else if (drawables_->mode == DepthMode::fixed) {
-    rasterize_triangle(element, visit);
-  } else {
-    rasterize_proxy(element, verb, visit);
-  }
 }
 
 std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {

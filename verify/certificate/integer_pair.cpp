@@ -19,8 +19,8 @@ namespace {
 
 int bit_length(Wide magnitude) {
   const auto high = static_cast<std::uint64_t>(magnitude >> 64);
-  return high != 0 ? 128 - std::countl_zero(high)
-                   : 64 - std::countl_zero(static_cast<std::uint64_t>(magnitude));
+  return high != 0 ? 64 + std::bit_width(high)
+                   : std::bit_width(static_cast<std::uint64_t>(magnitude));
 }
 
 /// The triangle whose corners are three of `points`, from `first` on.
@@ -35,11 +35,12 @@ Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int
 }  // namespace
 
 struct IntegerPair::Big : ScaledPair {
-  mpz_class clearance;
+  mpz_class clearance, squared_clearance;
 
   Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance)
       : ScaledPair(scaled(from_a, from_b, distance)) {
     scale(clearance, distance, exponent);
+    multiply(squared_clearance, clearance, clearance);
   }
 };
 
@@ -116,7 +117,7 @@ bool IntegerPair::separated_by(int direction) {
   return with_direction(direction, clearance_, [&](auto& s, const auto& a, const auto& b) {
     if (!has_gap(s, a, b)) return false;
     if constexpr (std::is_same_v<decltype(s.ee), mpz_class>)
-      return clearance_ == 0 || gap_exceeds(s, big().clearance);
+      return clearance_ == 0 || gap_reaches(s, big().squared_clearance, 1, false);
     return true;
   });
 }

@@ -51,13 +51,19 @@ void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corner
   }
 }
 
-/// True iff the projections onto s.d have a gap. False if s.d is zero.
+/// Projects the corners onto s.d.
 template <class Integer>
-bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
+void project(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
   for (int i = 0; i < 3; ++i) {
     dot(s.on_a[i], s.d, a[i]);
     dot(s.on_b[i], s.d, b[i]);
   }
+}
+
+/// True iff the projections onto s.d have a gap. False if s.d is zero.
+template <class Integer>
+bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
+  project(s, a, b);
   const auto all_less = [](const auto& x, const auto& y) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
@@ -69,37 +75,14 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// Sets `gap` to the length, times |d|, of the gap that has_gap() has found.
-template <class Integer>
-void gap_length(const Scratch<Integer>& s, Integer& gap) {
-  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
-  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
-  if (*a_hi < *b_lo) {
-    gap = *b_lo - *a_hi;
-  } else {
-    gap = *a_lo - *b_hi;
-  }
-}
-
-/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0. Then the
-/// distance is longer, too, since no gap is longer than the distance. Compares gap / |d| with the
-/// clearance, by squares.
-template <class Integer>
-bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
-  gap_length(s, s.we);
-  multiply(s.w[0], s.we, s.we);
-  dot(s.ee, s.d, s.d);
-  multiply(s.w[1], clearance, clearance);
-  multiply(s.w[2], s.w[1], s.ee);
-  return s.w[0] > s.w[2];
-}
-
 /// True iff the gap that has_gap() has found proves that the square of the distance is more than
-/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. Compares gap^2 /
-/// |d|^2.
+/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. No gap is longer
+/// than the distance. Compares gap^2 / |d|^2.
 inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
                         bool or_as_far) {
-  gap_length(s, s.we);
+  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+  s.we = *a_hi < *b_lo ? *b_lo - *a_hi : *a_lo - *b_hi;
   multiply(s.w[0], s.we, s.we);
   multiply(s.w[1], s.w[0], under);
   dot(s.ee, s.d, s.d);
@@ -116,10 +99,7 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
-  for (int i = 0; i < 3; ++i) {
-    dot(s.on_a[i], s.d, a[i]);
-    dot(s.on_b[i], s.d, b[i]);
-  }
+  project(s, a, b);
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
   const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
   const bool a_below = *a_hi <= *b_lo;
