@@ -106,20 +106,14 @@ std::size_t divide(std::span<std::uint32_t> items, const std::vector<Bounds>& bo
   int widest = 0;
   double spread = -1;
   for (int axis = 0; axis < 3; ++axis) {
-    double lo = kInf, hi = -kInf;
-    for (const std::uint32_t item : items) {
-      lo = std::min(lo, centre(item, axis));
-      hi = std::max(hi, centre(item, axis));
-    }
-    if (hi / 2 - lo / 2 > spread) {
-      widest = axis;
-      spread = hi / 2 - lo / 2;
-    }
+    const auto [lo, hi] =
+        std::ranges::minmax(items, {}, [&](std::uint32_t item) { return centre(item, axis); });
+    const double here = centre(hi, axis) / 2 - centre(lo, axis) / 2;
+    if (here > spread) widest = axis, spread = here;
   }
   const std::size_t middle = items.size() / 2;
-  std::nth_element(
-      items.begin(), items.begin() + middle, items.end(),
-      [&](std::uint32_t a, std::uint32_t b) { return centre(a, widest) < centre(b, widest); });
+  std::ranges::nth_element(items, items.begin() + middle, {},
+                           [&](std::uint32_t item) { return centre(item, widest); });
   return middle;
 }
 
@@ -259,16 +253,6 @@ class Ignored {
   std::uint64_t triangles_ = 0;  // pairs of triangles of ignored objects
 };
 
-std::vector<std::uint32_t> owners_of(const Scene& scene) {
-  std::vector<std::uint32_t> owner(scene.triangles.size(), kNone);
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const Object& object = scene.objects[o];
-    for (std::uint64_t i = 0; i < object.triangle_count; ++i)
-      owner.at(object.first_triangle + i) = o;
-  }
-  return owner;
-}
-
 /// The kept pairs with a lookup: the pairs (a, b) of triangle a lie in [starts[a], starts[a + 1]).
 class Kept {
  public:
@@ -334,7 +318,9 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   require_clearance("account", clearance);
   Accounting result;
   result.pairs_total = pairs_that_count(scene);
-  const std::vector<std::uint32_t> owner = owners_of(scene);
+  std::vector<std::uint32_t> owner;  // per triangle; pairs_that_count() found no gaps
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o)
+    owner.insert(owner.end(), scene.objects[o].triangle_count, o);
   const Ignored ignored(scene, options.ignored);
   result.ignored = ignored.triangle_pairs();
   const Kept kept_pairs(scene, owner, ignored, kept);

@@ -49,8 +49,8 @@ struct Accounting {
   FARCULL_FIELDS(pairs_total, ignored, pairs_kept, certified_by_boxes, certified_by_predicates,
                  neighbours, false_negatives)
 
-  /// True iff the classes sum to pairs_total. This is a real check: each class is counted where its
-  /// pairs are decided, but the total is computed from the sizes of the objects.
+  /// True iff the classes sum to pairs_total, which is computed from the sizes of the objects
+  /// alone.
   bool adds_up() const;
 };
 

@@ -349,10 +349,7 @@ bool DistanceClaims::wrong(std::size_t answer) const {
 
 std::uint64_t DistanceClaims::wrong(unsigned threads) const {
   std::atomic<std::uint64_t> count = 0;
-  const std::size_t chunks = chunks_for(answers_.size(), 64, threads);
-  for_chunks(answers_.size(), chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) count += wrong(k);
-  });
+  for_each_shared(answers_.size(), threads, [&](std::size_t k) { count += wrong(k); });
   return count;
 }
 

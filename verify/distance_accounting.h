@@ -78,8 +78,8 @@ struct DistanceAccounting {
   double ms = 0;
   FARCULL_FIELDS(pairs_total, answers, objects_meet, farther_by_boxes, farther_by_planes,
                  neighbours, farther_by_exact, nearer, earlier, wrong)
-  /// True iff the classes sum to pairs_total. This is a real check: the total is computed from the
-  /// sizes of the objects.
+  /// True iff the classes sum to pairs_total, which is computed from the sizes of the objects
+  /// alone.
   bool adds_up() const;
   /// True iff no pair was missed, no answer is wrong, and each is the first of the nearest pairs.
   bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }

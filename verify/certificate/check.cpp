@@ -236,9 +236,9 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
 
 // Why the certificate is of another scene; empty if the keys are the same except for the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
-  const auto differ = [](const char* what, const std::string& one, const std::string& other) {
-    return std::string("the certificate is of another scene: ") + what + " " + one + ", given " +
-           other;
+  const auto differ = [](const std::string& what, const std::string& one,
+                         const std::string& other) {
+    return "the certificate is of another scene: " + what + " " + one + ", given " + other;
   };
   const auto differ_in = [&](const char* what, std::uint64_t one, std::uint64_t other) {
     return differ(what, std::to_string(one), std::to_string(other));

@@ -1,6 +1,5 @@
 // Decides two triangles in integers: finds which of 38 directions separates them, or a point that
-// they share. With a clearance, finds which direction shows that they are farther apart, or two
-// points that are not farther apart.
+// they share.
 //
 // The certificate checker relies on this file, so the file uses neither CGAL nor verify/exact.
 // Every finite double is an integer times a power of two: the pair is scaled by one common power,

@@ -182,13 +182,6 @@ Tile read_tile(const Reader& in) {
   return tile;
 }
 
-Json tile_json(const Tile& tile) {
-  const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
-  return {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile.axis)])},
-          {"from", place(tile.from)},
-          {"to", place(tile.to)}};
-}
-
 double finite(double length) {
   if (!std::isfinite(length)) throw std::logic_error("to_text: a length that is not finite");
   return length;
@@ -224,7 +217,12 @@ std::string to_text(const Certificate& certificate) {
                  {"triangles", scene.triangles},
                  {"hash", scene.hash}}}};
   if (version > kVersion) json["clearance"] = finite(certificate.clearance);
-  if (certificate.tile) json["tile"] = tile_json(*certificate.tile);
+  if (const std::optional<Tile>& tile = certificate.tile) {
+    const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
+    json["tile"] = {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile->axis)])},
+                    {"from", place(tile->from)},
+                    {"to", place(tile->to)}};
+  }
   json["not_asked"] = {{"objects", certificate.not_asked.objects},
                        {"pairs", certificate.not_asked.pairs}};
   for (const auto& [name, count] : kClaims) json["claims"][name] = certificate.claims.*count;
