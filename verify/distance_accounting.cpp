@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -30,8 +29,6 @@ namespace farcull {
 // that neighbour. `all`: every pair within the distance is an answer.
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool has(const Object& object, std::uint32_t triangle) {
   return triangle >= object.first_triangle &&
@@ -142,11 +139,7 @@ class Join {
 
   /// a, b: roots of the trees of two objects, or one root twice.
   void objects(std::uint32_t a, std::uint32_t b) {
-    if (a == b) {
-      one(a);
-    } else {
-      two(a, b);
-    }
+    a == b ? one(a) : two(a, b);
     // An answer whose boxes are too far apart is wrong, but still counts as an answer.
     const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
     result_.answers += answers_.size();
@@ -236,19 +229,11 @@ bool is_rounded_root(double distance, const Fraction& square) {
   if (!(distance >= 0)) return false;
   mpq_class squared(square.over, square.under);
   squared.canonicalize();
-  const bool even = (std::bit_cast<std::uint64_t>(distance) & 1) == 0;
-  // Compares the root with the middle between `distance` and `next`, by squares.
-  const auto beside = [&](double next) {
+  // Compares the root, which is not negative, with the middle by squares.
+  return integer::is_nearest_double(distance, [&](double next) {
     const mpq_class middle = (integer::rational(distance) + integer::rational(next)) / 2;
-    return cmp(squared, middle * middle);
-  };
-  if (std::isfinite(distance)) {
-    const int above = beside(std::nextafter(distance, kInfinity));
-    if (above > 0 || (above == 0 && !even)) return false;
-  }
-  if (distance == 0) return true;
-  const int below = beside(std::nextafter(distance, 0.0));
-  return below > 0 || (below == 0 && even);
+    return next < 0 ? 1 : cmp(squared, mpq_class(middle * middle));
+  });
 }
 
 DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,

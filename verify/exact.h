@@ -89,7 +89,6 @@ bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec
 /// How many triangles of the scene are segments or points.
 std::uint64_t degenerate_triangles(const Scene& scene);
 
-/// Options of decide().
 struct ExactQuestion {
   double clearance = 0;                                    // world units, finite, >= 0
   unsigned threads = std::thread::hardware_concurrency();  // 0 counts as 1; changes no answer

@@ -3,7 +3,6 @@
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -42,20 +41,6 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const 
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-/// Whether x is the rounded fraction: whether the fraction lies between the middle of x and the
-/// next lower double and the middle of x and the next higher double.
-bool is_rounded(double x, const mpq_class& exact) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
-  const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
-  const auto beside = [&](double next) {
-    return cmp(exact, mpq_class((rational(x) + rational(next)) / 2));
-  };
-  const int below = x == -kInfinity ? 1 : beside(std::nextafter(x, -kInfinity));
-  const int above = x == kInfinity ? -1 : beside(std::nextafter(x, kInfinity));
-  return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
-}
-
 }  // namespace
 
 bool is_rounded(const Vec3& x, const FractionPoint& point) {
@@ -68,7 +53,11 @@ bool is_rounded(const Vec3& x, const FractionPoint& point) {
       exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
     }
     exact += mpq_class(point.from[k]);
-    if (!is_rounded(x[k], exact)) return false;
+    if (std::isnan(x[k]) || (x[k] == 0 && std::signbit(x[k]))) return false;
+    if (!is_nearest_double(x[k], [&](double next) {
+          return cmp(exact, mpq_class((rational(x[k]) + rational(next)) / 2));
+        }))
+      return false;
   }
   return true;
 }

@@ -101,6 +101,17 @@ inline mpq_class rational(double x) {
   return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
 }
 
+/// Whether x is a number rounded to the nearest double, to the even one of two. beside(next): the
+/// sign of the number minus the middle of x and `next`, a double beside x.
+template <class Beside>
+bool is_nearest_double(double x, const Beside& beside) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
+  const int below = x == -kInfinity ? 1 : beside(std::nextafter(x, -kInfinity));
+  const int above = x == kInfinity ? -1 : beside(std::nextafter(x, kInfinity));
+  return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
+}
+
 /// Two triangles in integers: a corner of the input is the first corner of a, plus 2^exponent times
 /// the integers.
 struct ScaledPair {
