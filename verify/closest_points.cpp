@@ -168,6 +168,14 @@ SquaredDistance squared(const Scaled& pair, const Found<Integer>& found) {
       SquaredDistance::Value{found.num, found.den, 2L * pair.exponent}));
 }
 
+/// Whether m times 2^exponent is a double.
+bool is_double(const Integer& m, long exponent) {
+  if (m == 0) return true;
+  const long first = bits_of(m) + exponent;
+  const long last = static_cast<long>(mpz_scan1(m.get_mpz_t(), 0)) + exponent;
+  return first - last <= 53 && last >= -1074 && first <= 1024;
+}
+
 }  // namespace
 
 std::string to_string(const Feature& feature) {
@@ -222,18 +230,6 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
   planes->exponent = -most_bits(planes->direction) - 4;
   planes_ = std::move(planes);
 }
-
-namespace {
-
-/// Whether m times 2^exponent is a double.
-bool is_double(const Integer& m, long exponent) {
-  if (m == 0) return true;
-  const long first = bits_of(m) + exponent;
-  const long last = static_cast<long>(mpz_scan1(m.get_mpz_t(), 0)) + exponent;
-  return first - last <= 53 && last >= -1074 && first <= 1024;
-}
-
-}  // namespace
 
 // Reach (side 0) or start. The place of a corner is the scalar product of the direction with the
 // corner minus a point of the plane, in integers, rounded outward: reach up, start down.

@@ -24,8 +24,6 @@ using Integers = std::array<mpz_class, 3>;
 constexpr std::array<std::string_view, kContactKinds.size()> kNames = {
     "apart", "equal", "touch-vertex", "touch-edge", "coplanar", "crossing", "touch-face"};
 
-// ---- points ----
-
 /// The point x / w, in units of a power of two. w > 0. Not in lowest terms.
 struct Point {
   Integers x;

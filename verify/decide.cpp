@@ -55,8 +55,6 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
   return result;
 }
 
-// ---- decide() ----
-
 namespace {
 
 using Corners = std::array<Vec3, 3>;

@@ -23,8 +23,6 @@
 
 namespace farcull {
 
-// ---- a question and its answers
-
 /// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects a
 /// <= b, or (with `all`) one of the pairs within the distance. If a == b, neighbours
 /// (verify/exact.h) are left out.
@@ -53,8 +51,6 @@ struct DistanceQuestion {
   bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
-
-// ---- the accounting
 
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
 /// that fits, and is counted when it is decided. A pair is *nearer* if it shows that an answer

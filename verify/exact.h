@@ -64,8 +64,6 @@ struct Collisions {
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers);
 
-// ---- the predicates ----
-
 /// The shape of the hull of three corners. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 

@@ -73,8 +73,6 @@ unsigned sides_of(const Scene& scene, std::uint32_t object, const Corners& t) {
   return sides;
 }
 
-// ---- pieces ----
-
 using Polygon = std::vector<Q3>;  // convex
 
 /// Divides each polygon that has corners on both sides of the plane.

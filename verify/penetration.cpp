@@ -33,8 +33,6 @@ const Vec3& farthest(const Points& points, const Vec3& direction) {
   return points[at];
 }
 
-// ---- polytopes of differences ----
-
 class Polytope {
  public:
   struct Face {

@@ -52,8 +52,6 @@ struct BoundsTree {
   std::vector<Node> nodes;
 };
 
-// ---- the pairs that a certificate is about ----
-
 /// All pairs of triangles that count (of different objects, and of one object where it is `self`)
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
 /// are only compared. With a clearance > 0 (world units, finite): the pairs whose boxes are no

@@ -19,6 +19,8 @@ namespace farcull {
 
 using namespace integer;
 
+enum class IntegerSurface : std::uint8_t { open, closed, oriented };
+
 namespace {
 
 constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
@@ -41,75 +43,10 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const 
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-}  // namespace
-
-bool is_rounded(const Vec3& x, const FractionPoint& point) {
-  for (int k = 0; k < 3; ++k) {
-    mpq_class exact(point.over[static_cast<std::size_t>(k)], point.under);
-    exact.canonicalize();
-    if (point.exponent >= 0) {
-      exact <<= static_cast<mp_bitcnt_t>(point.exponent);
-    } else {
-      exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
-    }
-    exact += mpq_class(point.from[k]);
-    if (std::isnan(x[k]) || (x[k] == 0 && std::signbit(x[k]))) return false;
-    if (!is_nearest_double(x[k], [&](double next) {
-          return cmp(exact, mpq_class((rational(x[k]) + rational(next)) / 2));
-        }))
-      return false;
-  }
-  return true;
-}
-
-IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  thread_local PointSearch on_a, on_b;
-  const ScaledPair pair = scaled(a, b);
-  for (int of_a = 0; of_a < kFeatures; ++of_a) {
-    for (int of_b = 0; of_b < kFeatures; ++of_b) {
-      // The construction is not trusted: the points count only if they lie in the triangles and are
-      // proved nearest.
-      if (!construct(on_a, on_b, pair.a, pair.b, of_a, of_b) ||
-          !on_a.is_nearest(on_b, pair.a, pair.b) || !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b))
-        continue;
-      IntegerDistance out;
-      on_a.squared_distance(on_b, out.squared.over, out.squared.under);
-      if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
-      if (pair.exponent < 0) out.squared.under <<= -2 * pair.exponent;
-      out.features = {static_cast<std::uint8_t>(of_a), static_cast<std::uint8_t>(of_b)};
-      out.points = {FractionPoint{on_a.point(), on_a.scale(), pair.exponent, a[0]},
-                    FractionPoint{on_b.point(), on_b.scale(), pair.exponent, a[0]}};
-      return out;
-    }
-  }
-  throw std::logic_error("integer_distance: no two features hold nearest points");
-}
-
-bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
-               bool or_as_far) {
-  if (or_as_far && length.squared.over == 0) return true;
-  thread_local Scratch<mpz_class> s;
-  const ScaledPair pair = scaled(a, b);
-  Fraction limit = length.squared;
-  if (pair.exponent > 0) limit.under <<= 2 * pair.exponent;
-  if (pair.exponent < 0) limit.over <<= -2 * pair.exponent;
-  const auto shows = [&](int direction) {
-    make_direction(s, pair.a, pair.b, direction);
-    return has_gap(s, pair.a, pair.b) && gap_reaches(s, limit.over, limit.under, or_as_far);
-  };
-  const int likely = likely_direction(a, b, length.above);
-  if (shows(likely)) return true;
-  return std::ranges::any_of(kByDegree, [&](int d) { return d != likely && shows(d); });
-}
-
-enum class IntegerSurface : std::uint8_t { open, closed, oriented };
-
 // Counts the crossings along a ray in the direction of the first axis. The ray starts a little
 // beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
 // infinitely small. So the ray meets no edge, and one ray is enough. The sign of a polynomial in e
 // is that of its coefficient of lowest degree that is not 0.
-
-namespace {
 
 /// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
 /// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ in
@@ -224,6 +161,65 @@ std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) 
 }
 
 }  // namespace
+
+bool is_rounded(const Vec3& x, const FractionPoint& point) {
+  for (int k = 0; k < 3; ++k) {
+    mpq_class exact(point.over[static_cast<std::size_t>(k)], point.under);
+    exact.canonicalize();
+    if (point.exponent >= 0) {
+      exact <<= static_cast<mp_bitcnt_t>(point.exponent);
+    } else {
+      exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
+    }
+    exact += mpq_class(point.from[k]);
+    if (std::isnan(x[k]) || (x[k] == 0 && std::signbit(x[k]))) return false;
+    if (!is_nearest_double(x[k], [&](double next) {
+          return cmp(exact, mpq_class((rational(x[k]) + rational(next)) / 2));
+        }))
+      return false;
+  }
+  return true;
+}
+
+IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  thread_local PointSearch on_a, on_b;
+  const ScaledPair pair = scaled(a, b);
+  for (int of_a = 0; of_a < kFeatures; ++of_a) {
+    for (int of_b = 0; of_b < kFeatures; ++of_b) {
+      // The construction is not trusted: the points count only if they lie in the triangles and are
+      // proved nearest.
+      if (!construct(on_a, on_b, pair.a, pair.b, of_a, of_b) ||
+          !on_a.is_nearest(on_b, pair.a, pair.b) || !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b))
+        continue;
+      IntegerDistance out;
+      on_a.squared_distance(on_b, out.squared.over, out.squared.under);
+      if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
+      if (pair.exponent < 0) out.squared.under <<= -2 * pair.exponent;
+      out.features = {static_cast<std::uint8_t>(of_a), static_cast<std::uint8_t>(of_b)};
+      out.points = {FractionPoint{on_a.point(), on_a.scale(), pair.exponent, a[0]},
+                    FractionPoint{on_b.point(), on_b.scale(), pair.exponent, a[0]}};
+      return out;
+    }
+  }
+  throw std::logic_error("integer_distance: no two features hold nearest points");
+}
+
+bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
+               bool or_as_far) {
+  if (or_as_far && length.squared.over == 0) return true;
+  thread_local Scratch<mpz_class> s;
+  const ScaledPair pair = scaled(a, b);
+  Fraction limit = length.squared;
+  if (pair.exponent > 0) limit.under <<= 2 * pair.exponent;
+  if (pair.exponent < 0) limit.over <<= -2 * pair.exponent;
+  const auto shows = [&](int direction) {
+    make_direction(s, pair.a, pair.b, direction);
+    return has_gap(s, pair.a, pair.b) && gap_reaches(s, limit.over, limit.under, or_as_far);
+  };
+  const int likely = likely_direction(a, b, length.above);
+  if (shows(likely)) return true;
+  return std::ranges::any_of(kByDegree, [&](int d) { return d != likely && shows(d); });
+}
 
 struct IntegerInside::OfObject {
   Box box = Box::empty();

@@ -32,6 +32,27 @@ Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int
   return out;
 }
 
+using Triangle = std::array<Vec3, 3>;
+
+Vec3 direction_of(const Triangle& a, const Triangle& b, int direction) {
+  const auto edge = [](const Triangle& t, int i) -> Vec3 { return t[(i + 1) % 3] - t[i]; };
+  const auto cross = [](const Vec3& x, const Vec3& y) -> Vec3 {
+    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  };
+  if (direction < 2) {
+    const Triangle& t = direction == 0 ? a : b;
+    return cross(edge(t, 0), edge(t, 1));
+  }
+  const int family = (direction - 2) / 9;
+  const int i = (direction - 2) % 9 / 3;
+  const int j = (direction - 2) % 3;
+  const Vec3 w = b[j] - a[i];
+  if (family == 0) return cross(edge(a, i), edge(b, j));
+  if (family == 3) return w;
+  const Vec3 e = family == 1 ? edge(a, i) : edge(b, j);
+  return w * e.dot(e) - e * w.dot(e);
+}
+
 }  // namespace
 
 struct IntegerPair::Big : ScaledPair {
@@ -178,31 +199,6 @@ bool IntegerPair::meets_beyond_shared() {
 
 // Tries all 38 directions in doubles. Rounding errors do no harm, since the caller proves the
 // guess.
-
-namespace {
-
-using Triangle = std::array<Vec3, 3>;
-
-Vec3 direction_of(const Triangle& a, const Triangle& b, int direction) {
-  const auto edge = [](const Triangle& t, int i) -> Vec3 { return t[(i + 1) % 3] - t[i]; };
-  const auto cross = [](const Vec3& x, const Vec3& y) -> Vec3 {
-    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
-  };
-  if (direction < 2) {
-    const Triangle& t = direction == 0 ? a : b;
-    return cross(edge(t, 0), edge(t, 1));
-  }
-  const int family = (direction - 2) / 9;
-  const int i = (direction - 2) % 9 / 3;
-  const int j = (direction - 2) % 3;
-  const Vec3 w = b[j] - a[i];
-  if (family == 0) return cross(edge(a, i), edge(b, j));
-  if (family == 3) return w;
-  const Vec3 e = family == 1 ? edge(a, i) : edge(b, j);
-  return w * e.dot(e) - e * w.dot(e);
-}
-
-}  // namespace
 
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   constexpr double kClear = 1e-6;

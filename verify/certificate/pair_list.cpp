@@ -18,67 +18,6 @@ bool share_corner(const Scene& scene, const TrianglePair& pair) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-}  // namespace
-
-std::string pair_list_header(bool self) {
-  return std::string("object_a,triangle_a,object_b,triangle_b") + (self ? ",neighbours\n" : "\n");
-}
-
-PairListRows::PairListRows(const Scene& scene, const ListNumbers* numbers)
-    : scene_(scene),
-      numbers_(numbers),
-      owner_(owners(scene)),
-      self_(numbers ? numbers->self : has_self(scene)) {}
-
-void PairListRows::append(const TrianglePair& pair, std::string& text) const {
-  const std::uint32_t a = owner_[pair.a];
-  const std::uint32_t b = owner_[pair.b];
-  const auto object = [&](std::uint32_t o) -> std::uint64_t {
-    return numbers_ ? numbers_->objects[o] : o;
-  };
-  const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
-    return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
-  };
-  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
-  char* end = numbers.data();
-  for (const std::uint64_t number :
-       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
-    end = std::to_chars(end, numbers.data() + numbers.size(), number).ptr;
-    *end++ = ',';
-  }
-  text.append(numbers.data(), end);
-  if (self_) {
-    text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";
-  } else {
-    text.back() = '\n';
-  }
-}
-
-std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs) {
-  std::string out = pair_list_header(has_self(scene));
-  const PairListRows rows(scene);
-  for (const TrianglePair& pair : pairs) rows.append(pair, out);
-  return out;
-}
-
-std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
-                           const ListNumbers* numbers) {
-  Sha256 hash;
-  hash.add(pair_list_header(numbers ? numbers->self : has_self(scene)));
-  const PairListRows rows(scene, numbers);
-  std::string line;
-  for (const TrianglePair& pair : pairs) {
-    line.clear();
-    rows.append(pair, line);
-    hash.add(line);
-  }
-  return hash.digest();
-}
-
-// ---- reading ----
-
-namespace {
-
 std::string in_quotes(std::string_view text) { return "'" + printable(text, 40) + "'"; }
 
 /// Divides the text into lines and the lines into cells.
@@ -150,6 +89,61 @@ constexpr std::array kNames = {"object_a",   "triangle_a", "object_b",
 constexpr std::size_t kNeeded = 4, kFrame = 4, kNeighboursColumn = 5;
 
 }  // namespace
+
+std::string pair_list_header(bool self) {
+  return std::string("object_a,triangle_a,object_b,triangle_b") + (self ? ",neighbours\n" : "\n");
+}
+
+PairListRows::PairListRows(const Scene& scene, const ListNumbers* numbers)
+    : scene_(scene),
+      numbers_(numbers),
+      owner_(owners(scene)),
+      self_(numbers ? numbers->self : has_self(scene)) {}
+
+void PairListRows::append(const TrianglePair& pair, std::string& text) const {
+  const std::uint32_t a = owner_[pair.a];
+  const std::uint32_t b = owner_[pair.b];
+  const auto object = [&](std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->objects[o] : o;
+  };
+  const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
+  };
+  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
+  char* end = numbers.data();
+  for (const std::uint64_t number :
+       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
+    end = std::to_chars(end, numbers.data() + numbers.size(), number).ptr;
+    *end++ = ',';
+  }
+  text.append(numbers.data(), end);
+  if (self_) {
+    text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";
+  } else {
+    text.back() = '\n';
+  }
+}
+
+std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs) {
+  std::string out = pair_list_header(has_self(scene));
+  const PairListRows rows(scene);
+  for (const TrianglePair& pair : pairs) rows.append(pair, out);
+  return out;
+}
+
+std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
+                           const ListNumbers* numbers) {
+  Sha256 hash;
+  hash.add(pair_list_header(numbers ? numbers->self : has_self(scene)));
+  const PairListRows rows(scene, numbers);
+  std::string line;
+  for (const TrianglePair& pair : pairs) {
+    line.clear();
+    rows.append(pair, line);
+    hash.add(line);
+  }
+  return hash.digest();
+}
 
 GivenList read_pair_list(std::string_view text, const std::string& name) {
   GivenList out;
