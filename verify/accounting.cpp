@@ -136,8 +136,7 @@ class Tree {
 
   /// Calls visit(a, b), with a and b in any order, for each pair that counts and whose bounds meet;
   /// returns the number of pairs that count and whose bounds do not meet.
-  template <typename Visit>
-  std::uint64_t join(Visit& visit) const {
+  std::uint64_t join(auto& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
   }
 
@@ -178,8 +177,7 @@ class Tree {
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
 
-  template <typename Visit>
-  std::uint64_t join_within(const Node& node, Visit& visit) const {
+  std::uint64_t join_within(const Node& node, auto& visit) const {
     if (!node.within) return 0;
     if (node.left != kNone) {
       const Node& left = nodes_[node.left];
@@ -194,8 +192,7 @@ class Tree {
     return disjoint;
   }
 
-  template <typename Visit>
-  std::uint64_t join_across(const Node& a, const Node& b, Visit& visit) const {
+  std::uint64_t join_across(const Node& a, const Node& b, auto& visit) const {
     if (!meet(a.bounds, b.bounds, clearance_)) return std::uint64_t{a.count} * b.count;
     const bool a_is_leaf = a.left == kNone;
     const bool b_is_leaf = b.left == kNone;
@@ -211,8 +208,7 @@ class Tree {
     return disjoint;
   }
 
-  template <typename Visit>
-  std::uint64_t join_triangles(std::uint32_t s, std::uint32_t t, Visit& visit) const {
+  std::uint64_t join_triangles(std::uint32_t s, std::uint32_t t, auto& visit) const {
     if (!meet(bounds_[s], bounds_[t], clearance_)) return 1;
     visit(s, t);
     return 0;

@@ -33,8 +33,7 @@ struct Point {
 /// The sign of p - q in the lexicographic order.
 int compare(const Point& p, const Point& q) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w);
-    if (sign != 0) return sign;
+    if (const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w); sign != 0) return sign;
   }
   return 0;
 }

@@ -152,8 +152,7 @@ class InIntegers {
 
   static std::optional<int> compare(const Point& p, const Point& q) {
     for (int k = 0; k < 3; ++k) {
-      const int sign = sgn(mpz_class(p.x[k] * q.w - q.x[k] * p.w));
-      if (sign != 0) return sign;
+      if (const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w); sign != 0) return sign;
     }
     return 0;
   }

@@ -163,8 +163,7 @@ class Join {
     if (!trees_.is_leaf(n)) {
       one(trees_.left(n));
       one(trees_.right(n));
-      two(trees_.left(n), trees_.right(n));
-      return;
+      return two(trees_.left(n), trees_.right(n));
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       for (std::uint32_t j = i + 1; j < node.first + node.count; ++j)

@@ -33,8 +33,6 @@
 
 namespace farcull {
 
-// ---- the answers of decide() about each candidate, and their count ----
-
 /// The answer about one candidate, at first `undecided`. neighbours_unasked: the candidate is a
 /// pair of neighbours, and ExactQuestion::neighbours is false.
 enum class PairAnswer : std::uint8_t {

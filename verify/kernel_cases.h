@@ -1,4 +1,4 @@
-// Test cases that are hard for the kernels (verify/kernel_check.h).
+// Triangles, lines and solids that are hard for the exact offset (verify/kernel_check.h).
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,6 @@
 #include "verify/solid_lines.h"
 
 namespace farcull::minkowski_cases {
-
-// Triangles, lines and solids that are hard for the exact offset.
 
 using minkowski_line::Weights;
 using rational::Draws;

@@ -94,11 +94,8 @@ SquaredDistance::SquaredDistance(std::shared_ptr<const Value> value) : value_(st
 SquaredDistance SquaredDistance::of(double distance) {
   if (distance == 0) return {};
   const int exponent = lowest_bit(distance);
-  auto value = std::make_shared<Value>();
-  value->num = integer_of(distance, exponent);
-  value->num *= value->num;
-  value->exponent = 2L * exponent;
-  return SquaredDistance(std::move(value));
+  const mpz_class whole = integer_of(distance, exponent);
+  return SquaredDistance(std::make_shared<Value>(Value{whole * whole, 1, 2L * exponent}));
 }
 
 double SquaredDistance::root() const {

@@ -6,8 +6,6 @@
 
 namespace farcull {
 
-// The tree divides at the median of the centres, along the axis in which they spread most.
-
 BoundsTree::Bounds BoundsTree::bounds_of(const std::array<Vec3, 3>& corners) {
   Bounds out;
   for (int k = 0; k < 3; ++k) {
@@ -28,8 +26,9 @@ BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The places where the tree divides change only the time of a query, not its answer, since a query
-// looks below every node whose box it meets.
+// The tree divides at the median of the centres, along the axis in which they spread most. These
+// places change only the time of a query, not its answer, since a query looks below every node
+// whose box it meets.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;

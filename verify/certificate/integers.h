@@ -152,8 +152,6 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 
 namespace farcull {
 
-// ---- squares of distances as fractions ----
-
 /// A fraction over / under >= 0. Not always in lowest terms.
 struct Fraction {
   mpz_class over = 0;   // >= 0
