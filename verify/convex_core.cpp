@@ -66,8 +66,7 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
 
 /// The proof at the top of the header, for the hull of the points. near: all triangles that may
 /// meet the hull. planes: their normals are tried first, then that of the triangle.
-template <class Near>
-bool is_core(const ClosedObject& solid, const Near& near, const Vec3& seed,
+bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
   for (const Vec3& p : points) size = std::max(size, (p - seed).cwiseAbs().maxCoeff());

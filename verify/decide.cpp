@@ -124,7 +124,6 @@ class SameObject {
 
 // Pairs in a block, at most: enough to pay for the shared counter, few enough to balance threads.
 constexpr std::size_t kBlock = 1024;
-constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with
 
 /// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.
 ///
@@ -264,7 +263,7 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   // Each step takes twice as many candidates as the one before, so that threads have enough work if
   // few collide. The steps do not depend on the number of threads, so neither do `decided` and
   // `complete`.
-  std::size_t step = kFirstStep;
+  std::size_t step = 2 * kBlock;
   FirstCollisions out;
   Collisions& all = out.collisions;
   while (out.decided < candidates.size() && all.pairs.size() + all.neighbour_pairs.size() < limit) {

@@ -143,8 +143,7 @@ struct Edge {
 
 /// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
 /// returns false. Returns true if no call did.
-template <class Group>
-bool each_edge(std::span<const Edge> edges, const Group& group) {
+bool each_edge(std::span<const Edge> edges, const auto& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {
     }

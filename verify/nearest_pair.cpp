@@ -27,11 +27,9 @@
 #include "verify/rounding.h"
 
 namespace farcull {
-
 namespace {
 
 using filters::DistanceBounds;
-
 using Triangle = std::array<Vec3, 3>;
 
 /// The closest points of a pair, to recognise pairs that have the same ones.

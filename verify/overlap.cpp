@@ -50,8 +50,7 @@ int side_of(const Corners& t, const Vec3& p) {
   return sign != 0 ? sign : plane_of(t).side(exact(p));
 }
 
-template <class Visit>
-void for_triangles(const Scene& scene, std::uint32_t object, const Visit& visit) {
+void for_triangles(const Scene& scene, std::uint32_t object, const auto& visit) {
   const Object& o = scene.objects[object];
   for (std::uint32_t k = 0; k < o.triangle_count; ++k) visit(scene.corners(o.first_triangle + k));
 }

@@ -160,8 +160,7 @@ bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, doub
 
 // Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
 // is the value that the depth buffer stores for it, or compares with its own.
-template <class Visit>
-void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const auto& visit) const {
   if (element == kEverywhere) {
     const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) visit(pixel, 0, 0);

@@ -50,8 +50,7 @@ class WorstCanvas final : public Canvas {
 
  private:
   bool covers(const Proxy& proxy, double orientation, double cx, double cy) const;
-  template <class Visit>
-  void rasterize(std::uint32_t element, Verb verb, const Visit& visit) const;
+  void rasterize(std::uint32_t element, Verb verb, const auto& visit) const;
   float held(float z) const;
   float held(float z, Verb verb) const;
 

@@ -119,8 +119,7 @@ IntegerPair::Big& IntegerPair::big() {
 }
 
 /// Makes the direction and returns use(scratch, a, b), in integers that are long enough.
-template <class Use>
-bool IntegerPair::with_direction(int direction, double clearance, const Use& use) {
+bool IntegerPair::with_direction(int direction, double clearance, const auto& use) {
   // A clearance is mostly a decimal fraction, which makes the integers too long for Wide.
   if (clearance == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);

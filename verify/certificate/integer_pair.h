@@ -75,8 +75,7 @@ class IntegerPair {
   struct Big;
   Big& big();
 
-  template <class Use>
-  bool with_direction(int direction, double clearance, const Use& use);
+  bool with_direction(int direction, double clearance, const auto& use);
 
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;

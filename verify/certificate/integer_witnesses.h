@@ -127,15 +127,11 @@ inline int most_bits(int direction) {
   return direction < 11 ? 41 : 30;
 }
 
-// The 21 points of a pair of triangles: corners, points of edges in planes, and points of edges
-// near edges. For a clearance, 42 pairs of points, one on each triangle. Each point is a vector of
-// integers over one integer.
-
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-/// Constructs points and verifies them. Its integers are members, since GMP's integers own memory:
-/// a search that allocated them anew would spend most of its time on that.
+/// Constructs points and verifies them. A point is a vector of integers over one integer. The
+/// integers are members for the reason that Scratch gives.
 class PointSearch {
  public:
   /// These functions construct a point, and return false if it does not exist. The point lies on
@@ -311,9 +307,8 @@ class PointSearch {
   mpz_class numerator_, value_;
 };
 
-/// True iff test() holds for one of the 21 points.
-template <class Test>
-bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const Test& test) {
+/// True iff test() holds for one of the 21 points: corners, edges in planes, edges near edges.
+bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const auto& test) {
   for (int i = 0; i < 3; ++i) {
     if (search.edge_and_plane(a, i, b) && test()) return true;
     if (search.edge_and_plane(b, i, a) && test()) return true;
@@ -332,9 +327,8 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
 
 /// True iff test() holds for one of the 42 pairs of points (docs/certificate.md), one on a and one
 /// on b.
-template <class Test>
 bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
-                    const Test& test) {
+                    const auto& test) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (on_a.corner(a, i) && on_b.corner(b, j) && test()) return true;

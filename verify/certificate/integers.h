@@ -133,13 +133,12 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   }
   ScaledPair out;
   if (least != std::numeric_limits<int>::max()) out.exponent = least;
-  const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k], out.exponent);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      scale(out.a[i][k], a[i][k], out.exponent);
+      scale(out.b[i][k], b[i][k], out.exponent);
     }
-  };
-  convert(out.a, a);
-  convert(out.b, b);
+  }
   // Directions and gaps depend only on differences of corners, and these are shorter numbers.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {

@@ -105,8 +105,7 @@ class Reader {
     return {name_, value, place, keys};
   }
   /// Calls visit(value, place) for each value of an array.
-  template <class Visit>
-  void each(const char* key, const Visit& visit) const {
+  void each(const char* key, const auto& visit) const {
     if (!object_[key].is_array()) fail(in_ + key + " is no array");
     std::size_t k = 0;
     for (const Json& value : object_[key])
