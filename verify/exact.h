@@ -65,7 +65,6 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
 /// The shape of the hull of three corners. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
-/// The exact shape, by CGAL's collinearity predicate.
 Shape shape(const std::array<Vec3, 3>& corners);
 
 /// True iff the closed convex hulls share a point. Symmetric; the order of corners does not matter.

@@ -127,7 +127,6 @@ struct WholeScene {
   Certificate::Unasked not_asked;
 };
 
-/// The key of the scene, and what the scene does not ask about.
 Certificate::SceneKey key_of(const Scene& scene);
 Certificate::Unasked unasked_of(const Scene& scene);
 
