@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -26,10 +25,9 @@
 #include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "verify/certificate/box_pairs.h"
+#include "verify/within.h"
 
 namespace farcull {
-
-// ---- sets of pairs: the sum is over scrambled numbers of the pairs ----
 
 void PairSet::add(const TrianglePair& pair) {
   ++count;
@@ -47,8 +45,6 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
   return out;
 }
 
-// ---- the accounting ----
-
 namespace {
 
 // Largest number of triangles in a leaf. More make fewer nodes, but more tests of single boxes.
@@ -57,15 +53,12 @@ constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kChunk = 1 << 18;
 constexpr std::uint32_t kNone = 0xffffffff;
 
-struct Bounds {
-  std::array<double, 3> lo;
-  std::array<double, 3> hi;
-};
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
-Bounds empty_bounds() {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  return {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
-}
+struct Bounds {
+  std::array<double, 3> lo = {kInf, kInf, kInf};
+  std::array<double, 3> hi = {-kInf, -kInf, -kInf};
+};
 
 void include(Bounds& bounds, const Bounds& other) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +77,7 @@ bool meet(const Bounds& a, const Bounds& b, double clearance) {
 }
 
 std::vector<Bounds> bounds_of_triangles(const Scene& scene) {
-  std::vector<Bounds> bounds(scene.triangles.size(), empty_bounds());
+  std::vector<Bounds> bounds(scene.triangles.size());
   for (std::uint32_t t = 0; t < bounds.size(); ++t) {
     for (const Vec3& p : scene.corners(t)) {
       const std::array<double, 3> corner = {p.x(), p.y(), p.z()};
@@ -95,7 +88,7 @@ std::vector<Bounds> bounds_of_triangles(const Scene& scene) {
 }
 
 struct Node {
-  Bounds bounds = empty_bounds();
+  Bounds bounds;
   std::uint32_t first = 0;  // into Tree::order
   std::uint32_t count = 0;
   std::uint32_t left = kNone;  // kNone: a leaf
@@ -113,21 +106,14 @@ std::size_t divide(std::span<std::uint32_t> items, const std::vector<Bounds>& bo
   int widest = 0;
   double spread = -1;
   for (int axis = 0; axis < 3; ++axis) {
-    double lo = std::numeric_limits<double>::infinity();
-    double hi = -lo;
-    for (const std::uint32_t item : items) {
-      lo = std::min(lo, centre(item, axis));
-      hi = std::max(hi, centre(item, axis));
-    }
-    if (hi / 2 - lo / 2 > spread) {
-      widest = axis;
-      spread = hi / 2 - lo / 2;
-    }
+    const auto [lo, hi] =
+        std::ranges::minmax(items, {}, [&](std::uint32_t item) { return centre(item, axis); });
+    const double here = centre(hi, axis) / 2 - centre(lo, axis) / 2;
+    if (here > spread) widest = axis, spread = here;
   }
   const std::size_t middle = items.size() / 2;
-  std::nth_element(
-      items.begin(), items.begin() + middle, items.end(),
-      [&](std::uint32_t a, std::uint32_t b) { return centre(a, widest) < centre(b, widest); });
+  std::ranges::nth_element(items, items.begin() + middle, {},
+                           [&](std::uint32_t item) { return centre(item, widest); });
   return middle;
 }
 
@@ -135,7 +121,7 @@ class Tree {
  public:
   Tree(const Scene& scene, std::vector<Bounds> triangle_bounds, double clearance)
       : scene_(scene), clearance_(clearance), bounds_(std::move(triangle_bounds)) {
-    object_bounds_.assign(scene.objects.size(), empty_bounds());
+    object_bounds_.resize(scene.objects.size());
     std::vector<std::uint32_t> objects;
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
       const Object& object = scene.objects[o];
@@ -150,21 +136,15 @@ class Tree {
 
   /// Calls visit(a, b), with a and b in any order, for each pair that counts and whose bounds meet;
   /// returns the number of pairs that count and whose bounds do not meet.
-  template <typename Visit>
-  std::uint64_t join(Visit& visit) const {
+  std::uint64_t join(auto& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
   }
 
  private:
   std::uint32_t add(std::uint32_t left, std::uint32_t right, bool within) {
-    Node node;
-    node.bounds = nodes_[left].bounds;
-    include(node.bounds, nodes_[right].bounds);
-    node.first = nodes_[left].first;
-    node.count = nodes_[left].count + nodes_[right].count;
-    node.left = left;
-    node.right = right;
-    node.within = within;
+    const Node &a = nodes_[left], &b = nodes_[right];
+    Node node{a.bounds, a.first, a.count + b.count, left, right, within};
+    include(node.bounds, b.bounds);
     nodes_.push_back(node);
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
@@ -191,17 +171,13 @@ class Tree {
       const std::uint32_t right = build_triangles(first + middle, count - middle, self);
       return add(left, right, self);
     }
-    Node leaf;
-    leaf.first = first;
-    leaf.count = count;
-    leaf.within = self;
+    Node leaf{.bounds = {}, .first = first, .count = count, .within = self};
     for (const std::uint32_t t : items) include(leaf.bounds, bounds_[t]);
     nodes_.push_back(leaf);
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
 
-  template <typename Visit>
-  std::uint64_t join_within(const Node& node, Visit& visit) const {
+  std::uint64_t join_within(const Node& node, auto& visit) const {
     if (!node.within) return 0;
     if (node.left != kNone) {
       const Node& left = nodes_[node.left];
@@ -216,8 +192,7 @@ class Tree {
     return disjoint;
   }
 
-  template <typename Visit>
-  std::uint64_t join_across(const Node& a, const Node& b, Visit& visit) const {
+  std::uint64_t join_across(const Node& a, const Node& b, auto& visit) const {
     if (!meet(a.bounds, b.bounds, clearance_)) return std::uint64_t{a.count} * b.count;
     const bool a_is_leaf = a.left == kNone;
     const bool b_is_leaf = b.left == kNone;
@@ -233,8 +208,7 @@ class Tree {
     return disjoint;
   }
 
-  template <typename Visit>
-  std::uint64_t join_triangles(std::uint32_t s, std::uint32_t t, Visit& visit) const {
+  std::uint64_t join_triangles(std::uint32_t s, std::uint32_t t, auto& visit) const {
     if (!meet(bounds_[s], bounds_[t], clearance_)) return 1;
     visit(s, t);
     return 0;
@@ -274,16 +248,6 @@ class Ignored {
   std::set<ObjectPair> pairs_;
   std::uint64_t triangles_ = 0;  // pairs of triangles of ignored objects
 };
-
-std::vector<std::uint32_t> owners_of(const Scene& scene) {
-  std::vector<std::uint32_t> owner(scene.triangles.size(), kNone);
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const Object& object = scene.objects[o];
-    for (std::uint64_t i = 0; i < object.triangle_count; ++i)
-      owner.at(object.first_triangle + i) = o;
-  }
-  return owner;
-}
 
 /// The kept pairs with a lookup: the pairs (a, b) of triangle a lie in [starts[a], starts[a + 1]).
 class Kept {
@@ -335,38 +299,6 @@ std::uint64_t pairs_that_count(const Scene& scene) {
   return pairs;
 }
 
-/// Decides the pairs that were not kept, a chunk at a time, and counts them.
-class UnkeptPairs {
- public:
-  UnkeptPairs(const Scene& scene, const AccountOptions& options, const AccountingSteps& steps,
-              Accounting& result)
-      : scene_(scene), options_(options), steps_(steps), result_(result) {}
-
-  void add(const TrianglePair& pair) {
-    chunk_.push_back(pair);
-    if (chunk_.size() == kChunk) decide();
-  }
-  void decide() {
-    const Collisions missed = steps_.decide(scene_, chunk_, {.clearance = options_.clearance});
-    result_.neighbours += missed.neighbours_apart;
-    result_.false_negatives += missed.pairs.size() + missed.neighbour_pairs.size();
-    result_.certified_by_predicates += missed.apart;
-    chunk_.clear();
-    std::vector<TrianglePair>& examples = result_.examples;
-    for (const auto* pairs : {&missed.pairs, &missed.neighbour_pairs})
-      examples.insert(examples.end(), pairs->begin(), pairs->end());
-    std::sort(examples.begin(), examples.end());
-    examples.resize(std::min(examples.size(), options_.max_examples));
-  }
-
- private:
-  const Scene& scene_;
-  const AccountOptions& options_;
-  const AccountingSteps& steps_;
-  Accounting& result_;
-  std::vector<TrianglePair> chunk_;
-};
-
 }  // namespace
 
 bool Accounting::adds_up() const {
@@ -375,25 +307,33 @@ bool Accounting::adds_up() const {
 }
 
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
-                   const AccountOptions& options) {
-  return account(scene, kept, options, {decide, pairs_with_overlapping_boxes});
-}
-
-Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options, const AccountingSteps& steps) {
   const FloatingPointGuard guard;
   const Stopwatch start;
   const double clearance = options.clearance;
-  if (!(clearance >= 0 && std::isfinite(clearance)))
-    throw std::logic_error("account: a clearance must be finite and not negative");
+  require_clearance("account", clearance);
   Accounting result;
   result.pairs_total = pairs_that_count(scene);
-  const std::vector<std::uint32_t> owner = owners_of(scene);
+  std::vector<std::uint32_t> owner;  // per triangle; pairs_that_count() found no gaps
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o)
+    owner.insert(owner.end(), scene.objects[o].triangle_count, o);
   const Ignored ignored(scene, options.ignored);
   result.ignored = ignored.triangle_pairs();
   const Kept kept_pairs(scene, owner, ignored, kept);
 
-  UnkeptPairs unkept(scene, options, steps, result);
+  std::vector<TrianglePair> chunk;  // of pairs that were not kept
+  const auto decide_chunk = [&] {
+    const Collisions missed = steps.decide(scene, chunk, {.clearance = clearance});
+    result.neighbours += missed.neighbours_apart;
+    result.false_negatives += missed.pairs.size() + missed.neighbour_pairs.size();
+    result.certified_by_predicates += missed.apart;
+    chunk.clear();
+    std::vector<TrianglePair>& examples = result.examples;
+    for (const auto* pairs : {&missed.pairs, &missed.neighbour_pairs})
+      examples.insert(examples.end(), pairs->begin(), pairs->end());
+    std::ranges::sort(examples);
+    examples.resize(std::min(examples.size(), options.max_examples));
+  };
   PairSet overlapping;
   std::uint64_t ignored_overlapping = 0;
   const auto visit = [&](std::uint32_t s, std::uint32_t t) {
@@ -401,18 +341,17 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
     overlapping.add(pair);
     if (ignored.has(owner[s], owner[t])) {
       ++ignored_overlapping;
-      return;
-    }
-    if (kept_pairs.contains(pair)) {
+    } else if (kept_pairs.contains(pair)) {
       ++result.pairs_kept;
-      return;
+    } else {
+      chunk.push_back(pair);
+      if (chunk.size() == kChunk) decide_chunk();
     }
-    unkept.add(pair);
   };
 
   const std::vector<Bounds> bounds = bounds_of_triangles(scene);
   const std::uint64_t disjoint = Tree(scene, bounds, clearance).join(visit);
-  unkept.decide();
+  decide_chunk();
   // A kept pair with disjoint boxes is a mistake of the culling. It counts as kept, so it is
   // subtracted from certified_by_boxes.
   const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(

@@ -49,8 +49,8 @@ struct Accounting {
   FARCULL_FIELDS(pairs_total, ignored, pairs_kept, certified_by_boxes, certified_by_predicates,
                  neighbours, false_negatives)
 
-  /// True iff the classes sum to pairs_total. This is a real check: each class is counted where its
-  /// pairs are decided, but the total is computed from the sizes of the objects.
+  /// True iff the classes sum to pairs_total, which is computed from the sizes of the objects
+  /// alone.
   bool adds_up() const;
 };
 
@@ -60,6 +60,14 @@ struct AccountOptions {
   std::vector<ObjectPair> ignored = {};  // sorted, a < b; no kept pair is of two such objects
 };
 
+/// The two functions that account() calls to decide and to enumerate. Tests replace them by faulty
+/// ones, which account() has to notice.
+struct AccountingSteps {
+  std::function<Collisions(const Scene&, std::span<const TrianglePair>, const ExactQuestion&)>
+      decide = farcull::decide;
+  std::function<PairSet(const Scene&, double clearance)> overlapping = pairs_with_overlapping_boxes;
+};
+
 /// kept: the pairs that culling left to the exact tests; sorted, each pair once, a < b; they count
 /// and are not ignored. Throws std::logic_error if `kept` is not so (the counts would be wrong
 /// without notice), if validate() would not accept the ranges of the scene, or if the clearance is
@@ -67,18 +75,6 @@ struct AccountOptions {
 /// the classes do not sum to pairs_total, or the pairs whose boxes overlap are not those that the
 /// certificate's own enumeration finds. Memory O(triangles + kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
-                   const AccountOptions& options = {});
-
-/// The two functions that account() calls to decide and to enumerate.
-struct AccountingSteps {
-  std::function<Collisions(const Scene&, std::span<const TrianglePair>, const ExactQuestion&)>
-      decide;
-  std::function<PairSet(const Scene&, double clearance)> overlapping;
-};
-
-/// account() with `steps` in place of decide() and pairs_with_overlapping_boxes(), for tests: it
-/// must notice a faulty step.
-Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
-                   const AccountOptions& options, const AccountingSteps& steps);
+                   const AccountOptions& options = {}, const AccountingSteps& steps = {});
 
 }  // namespace farcull

@@ -78,10 +78,6 @@ unsigned touching(const Corners& t, const Feature& feature, const Vector& d, boo
   return out;
 }
 
-bool as_near(const Found<Integer>& f, const Found<Integer>& g) {
-  return f.num * g.den == g.num * f.den;
-}
-
 /// Finds the first pair of features that has points as near as `least`. The features may use only
 /// the corners in_a of a and in_b of b. False: there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
@@ -90,7 +86,9 @@ bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found
     if ((corners_of(f) & ~in_a) != 0) continue;
     for (const Feature& g : kFeatures) {
       if ((corners_of(g) & ~in_b) != 0) continue;
-      if (!find(pair.a, f, pair.b, g, answer.found) || !as_near(answer.found, least)) continue;
+      if (!find(pair.a, f, pair.b, g, answer.found) ||
+          answer.found.num * least.den != least.num * answer.found.den)
+        continue;
       answer.of_a = f;
       answer.of_b = g;
       return true;
@@ -119,15 +117,11 @@ bool farther(const Box& a, const Box& b, double most) {
   return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
 }
 
-/// An upper bound of the distance.
-double upper_bound(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  if (filter_planes(a, b) == Triage::yes) return 0;
-  return filters::distance_bounds<FilterBounds>(a, b).upper;
-}
-
 /// Tries all pairs of features in order; returns the first with the least distance.
 Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  const double most = upper_bound(a, b);
+  // An upper bound of the distance.
+  const double most =
+      filter_planes(a, b) == Triage::yes ? 0 : filters::distance_bounds<FilterBounds>(a, b).upper;
   const Boxes a_boxes = boxes_of(a), b_boxes = boxes_of(b);
   Answer best;
   Found<Integer> found;
@@ -170,16 +164,16 @@ Answer solve(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<
 }
 
 SquaredDistance squared(const Scaled& pair, const Found<Integer>& found) {
-  auto value = std::make_shared<SquaredDistance::Value>();
-  value->num = found.num;
-  value->den = found.den;
-  value->exponent = 2L * pair.exponent;
-  return SquaredDistance(std::move(value));
+  return SquaredDistance(std::make_shared<SquaredDistance::Value>(
+      SquaredDistance::Value{found.num, found.den, 2L * pair.exponent}));
 }
 
-Vec3 rounded_point(const Vector& p, const Integer& below, int exponent) {
-  return {rounded_quotient(p[0], below, exponent), rounded_quotient(p[1], below, exponent),
-          rounded_quotient(p[2], below, exponent)};
+/// Whether m times 2^exponent is a double.
+bool is_double(const Integer& m, long exponent) {
+  if (m == 0) return true;
+  const long first = bits_of(m) + exponent;
+  const long last = static_cast<long>(mpz_scan1(m.get_mpz_t(), 0)) + exponent;
+  return first - last <= 53 && last >= -1074 && first <= 1024;
 }
 
 }  // namespace
@@ -197,22 +191,20 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
   out.squared = squared(pair, answer.found);
   out.distance = out.squared.root();
   out.features = {answer.of_a, answer.of_b};
-  const auto point = [&](const std::array<Vec3, 3>& given, const Corners& corners, int side) {
+  const auto point = [&](int side) -> Vec3 {
     const Feature& f = out.features[side];
     // + 0.0 turns -0.0 into 0.0.
-    if (f.kind == FeatureKind::vertex) return Vec3(given[f.index].array() + 0.0);
-    return rounded_point(point_of(corners, f, answer.found, side), answer.found.below,
-                         pair.exponent);
+    if (f.kind == FeatureKind::vertex) return (side == 0 ? a : b)[f.index].array() + 0.0;
+    return rounded_point(point_of(side == 0 ? pair.a : pair.b, f, answer.found, side),
+                         answer.found.below, pair.exponent);
   };
   // If an edge passes through a face, the point of the face is the point of the edge.
   const bool passes = out.features[0].kind != FeatureKind::vertex &&
                       out.features[1].kind != FeatureKind::vertex &&
                       out.features[0].kind != out.features[1].kind;
   const int first = passes && out.features[0].kind == FeatureKind::face ? 1 : 0;
-  out.points[first] = point(first == 0 ? a : b, first == 0 ? pair.a : pair.b, first);
-  out.points[1 - first] = passes
-                              ? out.points[first]
-                              : point(first == 0 ? b : a, first == 0 ? pair.b : pair.a, 1 - first);
+  out.points[first] = point(first);
+  out.points[1 - first] = passes ? out.points[first] : point(1 - first);
   return out;
 }
 
@@ -235,24 +227,9 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
   planes->direction = answer.found.direction;
   // The direction is perpendicular to the features, so any of their corners is on its plane.
   planes->on = {a[answer.of_a.index], b[answer.of_b.index]};
-  std::size_t bits = 0;
-  for (const Integer& x : planes->direction)
-    bits = std::max(bits, mpz_sizeinbase(x.get_mpz_t(), 2));
-  planes->exponent = -static_cast<long>(bits) - 4;
+  planes->exponent = -most_bits(planes->direction) - 4;
   planes_ = std::move(planes);
 }
-
-namespace {
-
-/// Whether m times 2^exponent is a double.
-bool is_double(const Integer& m, long exponent) {
-  if (m == 0) return true;
-  const auto first = static_cast<long>(mpz_sizeinbase(m.get_mpz_t(), 2)) + exponent;
-  const long last = static_cast<long>(mpz_scan1(m.get_mpz_t(), 0)) + exponent;
-  return first - last <= 53 && last >= -1074 && first <= 1024;
-}
-
-}  // namespace
 
 // Reach (side 0) or start. The place of a corner is the scalar product of the direction with the
 // corner minus a point of the plane, in integers, rounded outward: reach up, start down.

@@ -24,8 +24,6 @@ using Integers = std::array<mpz_class, 3>;
 constexpr std::array<std::string_view, kContactKinds.size()> kNames = {
     "apart", "equal", "touch-vertex", "touch-edge", "coplanar", "crossing", "touch-face"};
 
-// ---- points ----
-
 /// The point x / w, in units of a power of two. w > 0. Not in lowest terms.
 struct Point {
   Integers x;
@@ -35,8 +33,7 @@ struct Point {
 /// The sign of p - q in the lexicographic order.
 int compare(const Point& p, const Point& q) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w);
-    if (sign != 0) return sign;
+    if (const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w); sign != 0) return sign;
   }
   return 0;
 }
@@ -141,10 +138,8 @@ auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned t
 std::string_view name_of(ContactKind kind) { return kNames.at(static_cast<std::size_t>(kind)); }
 
 std::optional<ContactKind> parse_contact_kind(std::string_view name) {
-  for (const ContactKind kind : kContactKinds) {
-    if (name_of(kind) == name) return kind;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kContactKinds, name, name_of);
+  return found == kContactKinds.end() ? std::nullopt : std::optional(*found);
 }
 
 ContactKind contact_kind(const Corners& a, const Corners& b) {
@@ -162,10 +157,9 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
   if (std::ranges::any_of(pairs, [](const TrianglePair& pair) { return pair.a == pair.b; }))
     throw std::logic_error("count_contacts: a pair of one triangle");
   const std::vector<ContactKind> kinds = contact_kinds(scene, pairs, threads);
-  ContactCounts counts;
-  counts.penetrating = static_cast<std::uint64_t>(std::ranges::count(kinds, ContactKind::crossing));
-  counts.touching = pairs.size() - counts.penetrating;
-  return counts;
+  const auto crossing =
+      static_cast<std::uint64_t>(std::ranges::count(kinds, ContactKind::crossing));
+  return {.touching = pairs.size() - crossing, .penetrating = crossing};
 }
 
 ContactShape contact_shape_of_segments(const Corners& a, const Corners& b) {
@@ -186,10 +180,8 @@ ContactShape contact_shape_of_segments(const Corners& a, const Corners& b) {
   } else if (order == 0) {
     out.kind = t.on_edge(ends[0]) ? ContactKind::touch_edge : ContactKind::crossing;
   }
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (int k = 0; k < 3; ++k)
-      out.ends[i][k] = rounded_quotient(ends[i].x[k], ends[i].w, scaled.exponent);
-  }
+  for (std::size_t i = 0; i < 2; ++i)
+    out.ends[i] = rounded_point(ends[i].x, ends[i].w, scaled.exponent);
   return out;
 }
 

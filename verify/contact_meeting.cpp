@@ -30,9 +30,7 @@ class Signs {
   /// The sign of det(q - p, r - p, s - p).
   int side(int p, int q, int r, int s) const {
     const auto e = from(p, q), f = from(p, r), w = from(p, s);
-    const filters::Normal normal = filters::normal_of(e, f);
-    const int sign = filters::sign(filters::dot(normal.n, w), filters::side_bound<FilterBounds>(
-                                                                  normal, filters::magnitudes(w)));
+    const int sign = filters::side_of<FilterBounds>(filters::normal_of(e, f), w);
     if (sign != 0) return sign;
     // A difference of doubles is 0 only if they are equal, since nothing underflows to 0.
     const bool terms = (w.x != 0 && ((e.y != 0 && f.z != 0) || (e.z != 0 && f.y != 0))) ||

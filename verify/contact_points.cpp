@@ -148,15 +148,11 @@ class InIntegers {
     return Point{{-out.x[0], -out.x[1], -out.x[2]}, -out.w};
   }
 
-  std::optional<Vec3> rounded(const Point& p) const {
-    const auto nearest = [&](int k) { return rounded_quotient(p.x[k], p.w, exponent_); };
-    return Vec3(nearest(0), nearest(1), nearest(2));
-  }
+  std::optional<Vec3> rounded(const Point& p) const { return rounded_point(p.x, p.w, exponent_); }
 
   static std::optional<int> compare(const Point& p, const Point& q) {
     for (int k = 0; k < 3; ++k) {
-      const int sign = sgn(mpz_class(p.x[k] * q.w - q.x[k] * p.w));
-      if (sign != 0) return sign;
+      if (const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w); sign != 0) return sign;
     }
     return 0;
   }

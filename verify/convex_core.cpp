@@ -66,8 +66,7 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
 
 /// The proof at the top of the header, for the hull of the points. near: all triangles that may
 /// meet the hull. planes: their normals are tried first, then that of the triangle.
-template <class Near>
-bool is_core(const ClosedObject& solid, const Near& near, const Vec3& seed,
+bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
   for (const Vec3& p : points) size = std::max(size, (p - seed).cwiseAbs().maxCoeff());
@@ -189,6 +188,67 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
   return out;
 }
 
+/// Whether a plane across the direction has all corners of a, moved, on one side and all of b on
+/// the other. A corner that is moved and projected has 6 roundings, relative to the magnitude. Far
+/// from the origin, corners are taken relative to a corner of the box of both. Along an axis on
+/// which no coordinate is more than twice another, these differences are exact (Sterbenz,
+/// Floating-Point Computation, 1974).
+bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
+  Vec3 origin = Vec3::Zero();
+  double magnitude = t.cwiseAbs().maxCoeff();
+  for (int k = 0; k < 3; ++k) {
+    const double lo = std::min(a.box().lo[k], b.box().lo[k]);
+    const double hi = std::max(a.box().hi[k], b.box().hi[k]);
+    if (lo > 0 && hi <= 2 * lo) origin[k] = lo;
+    if (hi < 0 && lo >= 2 * hi) origin[k] = hi;
+    magnitude = std::max({magnitude, std::abs(lo - origin[k]), std::abs(hi - origin[k])});
+  }
+  magnitude += t.cwiseAbs().maxCoeff();
+  double most = -kInf, least = kInf;
+  for (const Vec3& p : a.corners()) most = std::max(most, t.dot(p - origin + t));
+  for (const Vec3& p : b.corners()) least = std::min(least, t.dot(p - origin));
+  return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
+}
+
+/// Whether the surfaces are apart by more than `margin`, if a is moved.
+bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
+  const auto moved = [&](BoundsTree::Bounds box) {
+    for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
+    return box;
+  };
+  const auto extent = [](const BoundsTree::Bounds& box) {
+    return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+  };
+  const BoundsTree &of_a = a.tree(), &of_b = b.tree();
+  std::vector<std::array<std::uint32_t, 2>> stack = {{0, 0}};
+  while (!stack.empty()) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const BoundsTree::Node &m = of_a.nodes[i], &n = of_b.nodes[j];
+    if (separation::farther(moved(m.bounds), n.bounds, margin)) continue;
+    if (!of_a.is_leaf(i) && (of_b.is_leaf(j) || extent(m.bounds) > extent(n.bounds))) {
+      stack.push_back({of_a.left(i), j}), stack.push_back({of_a.right(i), j});
+      continue;
+    }
+    if (!of_b.is_leaf(j)) {
+      stack.push_back({i, of_b.left(j)}), stack.push_back({i, of_b.right(j)});
+      continue;
+    }
+    for (std::uint32_t p = 0; p < m.count; ++p) {
+      ClosedObject::Corners s = a.triangles()[m.first + p];
+      for (Vec3& corner : s) corner += t;
+      const BoundsTree::Bounds box = BoundsTree::bounds_of(s);
+      for (std::uint32_t q = 0; q < n.count; ++q) {
+        const ClosedObject::Corners& other = b.triangles()[n.first + q];
+        if (!separation::farther(box, BoundsTree::bounds_of(other), margin) &&
+            is_within(s, other, margin))
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
@@ -209,7 +269,17 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   std::vector<Corners> ordered;
   for (const std::uint32_t t : tree_.order) ordered.push_back(triangles_[t]);
   triangles_ = std::move(ordered);
-  find_convex();
+  constexpr double kMostTests = 3e7;
+  if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : corners_) middle += p / double(corners_.size());
+  // A thin object needs more room for rounding.
+  for (const double inward : {1e-12, 1e-9, 1e-6}) {
+    convex_.clear();
+    for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
+    if (is_core(*this, triangles_, middle, {}, convex_)) return;
+  }
+  convex_.clear();
 }
 
 bool ClosedObject::has(const Vec3& point) const {
@@ -252,20 +322,6 @@ bool ClosedObject::has_not(const Vec3& point) const {
   if ((point.array() < box_.lo.array()).any() || (point.array() > box_.hi.array()).any())
     return true;
   return overlap_at(scene_, object_, point, surface_) == Overlap::no;
-}
-
-void ClosedObject::find_convex() {
-  constexpr double kMostTests = 3e7;
-  if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : corners_) middle += p / double(corners_.size());
-  // A thin object needs more room for rounding.
-  for (const double inward : {1e-12, 1e-9, 1e-6}) {
-    convex_.clear();
-    for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
-    if (is_core(*this, triangles_, middle, {}, convex_)) return;
-  }
-  convex_.clear();
 }
 
 std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,
@@ -339,73 +395,6 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
   for (Grown& one : grown) out.push_back(std::move(one.points));
   return out;
 }
-
-// ---- translations after which two closed objects are apart
-
-namespace {
-
-/// Whether a plane across the direction has all corners of a, moved, on one side and all of b on
-/// the other. A corner that is moved and projected has 6 roundings, relative to the magnitude. Far
-/// from the origin, corners are taken relative to a corner of the box of both. Along an axis on
-/// which no coordinate is more than twice another, these differences are exact (Sterbenz,
-/// Floating-Point Computation, 1974).
-bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
-  Vec3 origin = Vec3::Zero();
-  double magnitude = t.cwiseAbs().maxCoeff();
-  for (int k = 0; k < 3; ++k) {
-    const double lo = std::min(a.box().lo[k], b.box().lo[k]);
-    const double hi = std::max(a.box().hi[k], b.box().hi[k]);
-    if (lo > 0 && hi <= 2 * lo) origin[k] = lo;
-    if (hi < 0 && lo >= 2 * hi) origin[k] = hi;
-    magnitude = std::max({magnitude, std::abs(lo - origin[k]), std::abs(hi - origin[k])});
-  }
-  magnitude += t.cwiseAbs().maxCoeff();
-  double most = -kInf, least = kInf;
-  for (const Vec3& p : a.corners()) most = std::max(most, t.dot(p - origin + t));
-  for (const Vec3& p : b.corners()) least = std::min(least, t.dot(p - origin));
-  return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
-}
-
-/// Whether the surfaces are apart by more than `margin`, if a is moved.
-bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
-  const auto moved = [&](BoundsTree::Bounds box) {
-    for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
-    return box;
-  };
-  const auto extent = [](const BoundsTree::Bounds& box) {
-    return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-  };
-  const BoundsTree &of_a = a.tree(), &of_b = b.tree();
-  std::vector<std::array<std::uint32_t, 2>> stack = {{0, 0}};
-  while (!stack.empty()) {
-    const auto [i, j] = stack.back();
-    stack.pop_back();
-    const BoundsTree::Node &m = of_a.nodes[i], &n = of_b.nodes[j];
-    if (separation::farther(moved(m.bounds), n.bounds, margin)) continue;
-    if (!of_a.is_leaf(i) && (of_b.is_leaf(j) || extent(m.bounds) > extent(n.bounds))) {
-      stack.push_back({of_a.left(i), j}), stack.push_back({of_a.right(i), j});
-      continue;
-    }
-    if (!of_b.is_leaf(j)) {
-      stack.push_back({i, of_b.left(j)}), stack.push_back({i, of_b.right(j)});
-      continue;
-    }
-    for (std::uint32_t p = 0; p < m.count; ++p) {
-      ClosedObject::Corners s = a.triangles()[m.first + p];
-      for (Vec3& corner : s) corner += t;
-      const BoundsTree::Bounds box = BoundsTree::bounds_of(s);
-      for (std::uint32_t q = 0; q < n.count; ++q) {
-        const ClosedObject::Corners& other = b.triangles()[n.first + q];
-        if (!separation::farther(box, BoundsTree::bounds_of(other), margin) &&
-            is_within(s, other, margin))
-          return false;
-      }
-    }
-  }
-  return true;
-}
-
-}  // namespace
 
 // If the surfaces are apart, but the insides have a common point, then a point of one surface is
 // inside the other object, and with it the whole connected piece of that surface. So one corner of

@@ -44,8 +44,6 @@ class ClosedObject {
   Vec3 nearest(const Vec3& point) const;
 
  private:
-  void find_convex();
-
   const Scene& scene_;
   std::uint32_t object_;
   Surface surface_;

@@ -55,16 +55,16 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
   return result;
 }
 
-// ---- decide() ----
-
 namespace {
 
 using Corners = std::array<Vec3, 3>;
 
 /// Bit 3 i + j is set if corner i of a and corner j of b have equal positions. If the indices are
 /// equal, the positions are not compared.
-unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corners& a,
-                       const std::array<std::uint32_t, 3>& b_index, const Corners& b) {
+unsigned equal_corners(const Scene& scene, const TrianglePair& pair, const Corners& a,
+                       const Corners& b) {
+  const std::array<std::uint32_t, 3>&a_index = scene.triangles[pair.a],
+                                  &b_index = scene.triangles[pair.b];
   unsigned equal = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -79,16 +79,13 @@ unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corner
 
 /// The answer about neighbours without exact arithmetic; `unknown` if that cannot decide.
 Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
-  const auto lowest = [](unsigned bits) { return std::countr_zero(bits); };
-  const int i = lowest(equal) / 3;
-  const int j = lowest(equal) % 3;
+  const int i = std::countr_zero(equal) / 3, j = std::countr_zero(equal) % 3;
   const unsigned rest = equal & (equal - 1);
   if (rest == 0) {
     return filter_beyond_vertex(a[i], a[(i + 1) % 3], a[(i + 2) % 3], b[(j + 1) % 3],
                                 b[(j + 2) % 3]);
   }
-  const int k = lowest(rest) / 3;
-  const int l = lowest(rest) % 3;
+  const int k = std::countr_zero(rest) / 3, l = std::countr_zero(rest) % 3;
   // More than an edge is shared, or a triangle has two equal corners.
   if ((rest & (rest - 1)) != 0 || i == k || j == l) return Triage::unknown;
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
@@ -99,22 +96,6 @@ PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corne
   const bool beyond =
       triage == Triage::unknown ? intersects_beyond_shared(a, b) : triage == Triage::yes;
   return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
-}
-
-/// The answer about a pair for which the filter of planes is `unknown`.
-PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool one_object,
-                             const ExactQuestion& question) {
-  const Corners a = scene.corners(pair.a);
-  const Corners b = scene.corners(pair.b);
-  if (one_object) {
-    const unsigned equal = equal_corners(scene.triangles[pair.a], a, scene.triangles[pair.b], b);
-    if (equal != 0) {
-      return question.neighbours ? answer_about_neighbours(equal, a, b)
-                                 : PairAnswer::neighbours_unasked;
-    }
-  }
-  return is_within_beyond_planes(a, b, question.clearance) ? PairAnswer::colliding
-                                                           : PairAnswer::apart;
 }
 
 /// Says whether both triangles of a pair are of one object. Fast if successive pairs mostly have
@@ -143,7 +124,6 @@ class SameObject {
 
 // Pairs in a block, at most: enough to pay for the shared counter, few enough to balance threads.
 constexpr std::size_t kBlock = 1024;
-constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with
 
 /// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.
 ///
@@ -199,11 +179,8 @@ class BlockDecider {
       const TrianglePair& pair = pairs[i];
       prefetch(scene_, pairs[std::min(i + kAhead, pairs.size() - 1)].b);
       if (same_object_(pair)) {
-        const Corners a = scene_.corners(pair.a);
-        const Corners b = scene_.corners(pair.b);
-        const unsigned equal =
-            equal_corners(scene_.triangles[pair.a], a, scene_.triangles[pair.b], b);
-        if (equal != 0) {
+        const Corners a = scene_.corners(pair.a), b = scene_.corners(pair.b);
+        if (const unsigned equal = equal_corners(scene_, pair, a, b); equal != 0) {
           answers[i] = answer_about_neighbours(equal, a, b);
           continue;
         }
@@ -219,9 +196,14 @@ class BlockDecider {
   }
 
   PairAnswer answer(const TrianglePair& pair, Triage triage) {
-    if (triage == Triage::unknown)
-      return answer_unfiltered(scene_, pair, same_object_(pair), question_);
-    return triage == Triage::no ? PairAnswer::apart : PairAnswer::colliding;
+    if (triage != Triage::unknown)
+      return triage == Triage::no ? PairAnswer::apart : PairAnswer::colliding;
+    const Corners a = scene_.corners(pair.a), b = scene_.corners(pair.b);
+    const unsigned equal = same_object_(pair) ? equal_corners(scene_, pair, a, b) : 0;
+    if (equal != 0 && !question_.neighbours) return PairAnswer::neighbours_unasked;
+    if (equal != 0) return answer_about_neighbours(equal, a, b);
+    return is_within_beyond_planes(a, b, question_.clearance) ? PairAnswer::colliding
+                                                              : PairAnswer::apart;
   }
 
   const Scene& scene_;
@@ -281,7 +263,7 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   // Each step takes twice as many candidates as the one before, so that threads have enough work if
   // few collide. The steps do not depend on the number of threads, so neither do `decided` and
   // `complete`.
-  std::size_t step = kFirstStep;
+  std::size_t step = 2 * kBlock;
   FirstCollisions out;
   Collisions& all = out.collisions;
   while (out.decided < candidates.size() && all.pairs.size() + all.neighbour_pairs.size() < limit) {
@@ -322,8 +304,33 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
                      mostly_unmoved(moved, candidates);
   clearance_ = question.clearance;
   neighbours_ = question.neighbours;
-  std::vector<PairAnswer> answers = keeps ? answers_with_kept(scene, candidates, moved, question)
-                                          : answers_about(scene, candidates, question);
+  std::vector<PairAnswer> answers;
+  if (!keeps) {
+    answers = answers_about(scene, candidates, question);
+  } else if (!moved.any() && std::ranges::equal(candidates, pairs_)) {
+    answers = answers_;
+    decided_ = 0;
+  } else {
+    answers.assign(candidates.size(), PairAnswer::undecided);
+    std::vector<TrianglePair> left;
+    std::vector<std::uint32_t> where;  // indices of `left` in the candidates
+    std::size_t last = 0;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      const TrianglePair& pair = candidates[k];
+      if (!moved.triangle(pair.a) && !moved.triangle(pair.b)) {
+        while (last < pairs_.size() && pairs_[last] < pair) ++last;
+        if (last < pairs_.size() && pairs_[last] == pair) {
+          answers[k] = answers_[last];
+          continue;
+        }
+      }
+      left.push_back(pair);
+      where.push_back(static_cast<std::uint32_t>(k));
+    }
+    const std::vector<PairAnswer> anew = answers_about(scene, left, question);
+    for (std::size_t k = 0; k < left.size(); ++k) answers[where[k]] = anew[k];
+    decided_ = left.size();
+  }
   const Collisions out = count_answers(candidates, answers);
   if (sorted) {
     pairs_.assign(candidates.begin(), candidates.end());
@@ -331,34 +338,6 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
     frame_ = moved.frame();
   }
   return out;
-}
-
-std::vector<PairAnswer> FrameDecider::answers_with_kept(const Scene& scene,
-                                                        std::span<const TrianglePair> candidates,
-                                                        const MovedCorners& moved,
-                                                        const ExactQuestion& question) {
-  decided_ = 0;
-  if (!moved.any() && std::ranges::equal(candidates, pairs_)) return answers_;
-  std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
-  std::vector<TrianglePair> left;
-  std::vector<std::uint32_t> where;  // indices of `left` in the candidates
-  std::size_t before = 0;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const TrianglePair& pair = candidates[k];
-    if (!moved.triangle(pair.a) && !moved.triangle(pair.b)) {
-      while (before < pairs_.size() && pairs_[before] < pair) ++before;
-      if (before < pairs_.size() && pairs_[before] == pair) {
-        answers[k] = answers_[before];
-        continue;
-      }
-    }
-    left.push_back(pair);
-    where.push_back(static_cast<std::uint32_t>(k));
-  }
-  const std::vector<PairAnswer> anew = answers_about(scene, left, question);
-  for (std::size_t k = 0; k < left.size(); ++k) answers[where[k]] = anew[k];
-  decided_ = left.size();
-  return answers;
 }
 
 }  // namespace farcull

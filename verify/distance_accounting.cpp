@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
-#include <deque>
+#include <memory>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -31,17 +30,6 @@ namespace farcull {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-mpq_class power_of_two(int exponent) {
-  mpz_class out = 1;
-  out <<= static_cast<unsigned>(std::abs(exponent));
-  return exponent >= 0 ? mpq_class(out) : mpq_class(1, out);
-}
-
-// The value of a double as a rational; 2^1024 for infinity.
-mpq_class rational(double x) { return std::isfinite(x) ? mpq_class(x) : power_of_two(1024); }
-
 bool has(const Object& object, std::uint32_t triangle) {
   return triangle >= object.first_triangle &&
          triangle - object.first_triangle < object.triangle_count;
@@ -62,13 +50,10 @@ class Undecided {
   /// Begins with the pairs of two objects (self: of one object), which have this threshold. answer:
   /// the answer about these objects, if there is one; empty with `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
-    now_ = {threshold, self, answer};
-    stored_ = false;
+    now_ = std::make_shared<const Asked>(Asked{threshold, self, answer});
   }
   void add(const TrianglePair& pair) {
-    if (!stored_) thresholds_.push_back(now_);
-    stored_ = true;
-    pairs_.push_back({pair, &thresholds_.back()});
+    pairs_.push_back({pair, now_});
     if (pairs_.size() == kChunk) decide();
   }
   void decide() {
@@ -79,8 +64,6 @@ class Undecided {
     });
     for (std::size_t k = 0; k < pairs_.size(); ++k) count(pairs_[k].pair, classes[k]);
     pairs_.clear();
-    thresholds_.clear();
-    stored_ = false;
   }
 
  private:
@@ -93,7 +76,7 @@ class Undecided {
   };
   struct Pair {
     TrianglePair pair;
-    const Asked* asked;  // of thresholds_
+    std::shared_ptr<const Asked> asked;
   };
 
   Class class_of(const Pair& pair) const {
@@ -130,9 +113,7 @@ class Undecided {
   const Scene& scene_;
   unsigned threads_;
   DistanceAccounting& result_;
-  Asked now_;
-  bool stored_ = false;           // now_ is in thresholds_
-  std::deque<Asked> thresholds_;  // pairs_ point to these
+  std::shared_ptr<const Asked> now_;
   std::vector<Pair> pairs_;
 };
 
@@ -158,11 +139,7 @@ class Join {
 
   /// a, b: roots of the trees of two objects, or one root twice.
   void objects(std::uint32_t a, std::uint32_t b) {
-    if (a == b) {
-      one(a);
-    } else {
-      two(a, b);
-    }
+    a == b ? one(a) : two(a, b);
     // An answer whose boxes are too far apart is wrong, but still counts as an answer.
     const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
     result_.answers += answers_.size();
@@ -186,8 +163,7 @@ class Join {
     if (!trees_.is_leaf(n)) {
       one(trees_.left(n));
       one(trees_.right(n));
-      two(trees_.left(n), trees_.right(n));
-      return;
+      return two(trees_.left(n), trees_.right(n));
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       for (std::uint32_t j = i + 1; j < node.first + node.count; ++j)
@@ -252,19 +228,11 @@ bool is_rounded_root(double distance, const Fraction& square) {
   if (!(distance >= 0)) return false;
   mpq_class squared(square.over, square.under);
   squared.canonicalize();
-  const bool even = (std::bit_cast<std::uint64_t>(distance) & 1) == 0;
-  // Compares the root with the middle between `distance` and `next`, by squares.
-  const auto beside = [&](double next) {
-    const mpq_class middle = (rational(distance) + rational(next)) / 2;
-    return cmp(squared, middle * middle);
-  };
-  if (std::isfinite(distance)) {
-    const int above = beside(std::nextafter(distance, kInfinity));
-    if (above > 0 || (above == 0 && !even)) return false;
-  }
-  if (distance == 0) return true;
-  const int below = beside(std::nextafter(distance, 0.0));
-  return below > 0 || (below == 0 && even);
+  // Compares the root, which is not negative, with the middle by squares.
+  return integer::is_nearest_double(distance, [&](double next) {
+    const mpq_class middle = (integer::rational(distance) + integer::rational(next)) / 2;
+    return next < 0 ? 1 : cmp(squared, mpq_class(middle * middle));
+  });
 }
 
 DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
@@ -341,13 +309,6 @@ Threshold DistanceClaims::threshold(std::uint32_t a, std::uint32_t b) const {
   return {Length(most), before ? Bound::at_most : Bound::below};
 }
 
-bool DistanceClaims::wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const {
-  const bool has_answer = question_.inside && question_.kind != DistanceQuestion::Kind::all &&
-                          claim.a != claim.b && squared.over != 0;
-  if (!has_answer) return claim.inside != InsideClaim::unknown;
-  return insides_.which(claim.a, claim.b) != claim.inside;
-}
-
 bool DistanceClaims::wrong(std::size_t answer) const {
   const ClaimedDistance& x = answers_[answer];
   const std::optional<Fraction>& squared = squares_[answer];
@@ -359,7 +320,9 @@ bool DistanceClaims::wrong(std::size_t answer) const {
   if (exact.squared != *squared || exact.features != x.features ||
       !is_rounded(x.points[0], exact.points[0]) || !is_rounded(x.points[1], exact.points[1]))
     return true;
-  if (wrong_inside(x, *squared)) return true;
+  const bool has_inside = question_.inside && question_.kind != DistanceQuestion::Kind::all &&
+                          x.a != x.b && squared->over != 0;
+  if (x.inside != (has_inside ? insides_.which(x.a, x.b) : InsideClaim::unknown)) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
   // The answer is wrong if neither object has the other one among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {
@@ -370,10 +333,7 @@ bool DistanceClaims::wrong(std::size_t answer) const {
 
 std::uint64_t DistanceClaims::wrong(unsigned threads) const {
   std::atomic<std::uint64_t> count = 0;
-  const std::size_t chunks = chunks_for(answers_.size(), 64, threads);
-  for_chunks(answers_.size(), chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) count += wrong(k);
-  });
+  for_each_shared(answers_.size(), threads, [&](std::size_t k) { count += wrong(k); });
   return count;
 }
 

@@ -23,8 +23,6 @@
 
 namespace farcull {
 
-// ---- a question and its answers
-
 /// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects a
 /// <= b, or (with `all`) one of the pairs within the distance. If a == b, neighbours
 /// (verify/exact.h) are left out.
@@ -54,8 +52,6 @@ struct DistanceQuestion {
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
-// ---- the accounting
-
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
 /// that fits, and is counted when it is decided. A pair is *nearer* if it shows that an answer
 /// should be nearer, or if it should be an answer itself. It is *earlier* if it is as near as the
@@ -78,8 +74,8 @@ struct DistanceAccounting {
   double ms = 0;
   FARCULL_FIELDS(pairs_total, answers, objects_meet, farther_by_boxes, farther_by_planes,
                  neighbours, farther_by_exact, nearer, earlier, wrong)
-  /// True iff the classes sum to pairs_total. This is a real check: the total is computed from the
-  /// sizes of the objects.
+  /// True iff the classes sum to pairs_total, which is computed from the sizes of the objects
+  /// alone.
   bool adds_up() const;
   /// True iff no pair was missed, no answer is wrong, and each is the first of the nearest pairs.
   bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }
@@ -131,7 +127,6 @@ class DistanceClaims {
   };
   void find_farthest();
   bool wrong(std::size_t answer) const;
-  bool wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const;
 
   const Scene& scene_;
   std::span<const ClaimedDistance> answers_;

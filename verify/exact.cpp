@@ -32,6 +32,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
+using Corners = std::array<Vec3, 3>;
 using Hull = std::variant<Point, Kernel::Segment_3, Kernel::Triangle_3>;  // in the order of Shape
 
 Point point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
@@ -40,31 +41,18 @@ bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
 }
 
-Hull hull(const std::array<Vec3, 3>& corners) {
+Hull hull(const Corners& corners) {
   const auto& [a, b, c] = corners;
-  switch (shape(corners)) {
-    case Shape::triangle:
-      return Kernel::Triangle_3(point(a), point(b), point(c));
-    case Shape::segment: {
-      // Collinear points are in lexicographic order along their line, so the extremes are the ends.
-      const auto [lo, hi] = std::minmax({a, b, c}, lexicographically_less);
-      return Kernel::Segment_3(point(lo), point(hi));
-    }
-    case Shape::point:
-      break;
-  }
-  return point(a);
+  const Shape of = shape(corners);
+  if (of == Shape::triangle) return Kernel::Triangle_3(point(a), point(b), point(c));
+  if (of == Shape::point) return point(a);
+  // Collinear points are in lexicographic order along their line, so the extremes are the ends.
+  const auto [lo, hi] = std::minmax({a, b, c}, lexicographically_less);
+  return Kernel::Segment_3(point(lo), point(hi));
 }
-
-using Corners = std::array<Vec3, 3>;
 
 bool hulls_meet(const Hull& p, const Hull& q) {
   return std::visit([](const auto& x, const auto& y) { return CGAL::do_intersect(x, y); }, p, q);
-}
-
-Hull hull(const Vec3& p, const Vec3& q) {
-  if (p == q) return point(p);
-  return Kernel::Segment_3(point(p), point(q));
 }
 
 /// Divides a degenerate triangle into the segments from a corner to the other two corners. A
@@ -83,7 +71,8 @@ Hull rim_at(const Corners& part, const Vec3& v) {
     if (p != v) others.at(count++) = p;
   }
   if (count == 0) return point(v);
-  return hull(others[0], others[count - 1]);
+  if (count == 1 || others[0] == others[1]) return point(others[0]);
+  return Kernel::Segment_3(point(others[0]), point(others[1]));
 }
 
 /// Decides about neighbours with one shared position v. Both triangles are unions of convex parts
@@ -144,12 +133,7 @@ bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double c
 }
 
 bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  for (const Vec3& p : a) {
-    for (const Vec3& q : b) {
-      if (p == q) return true;
-    }
-  }
-  return false;
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
 bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {

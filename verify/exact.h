@@ -33,8 +33,6 @@
 
 namespace farcull {
 
-// ---- the answers of decide() about each candidate, and their count ----
-
 /// The answer about one candidate, at first `undecided`. neighbours_unasked: the candidate is a
 /// pair of neighbours, and ExactQuestion::neighbours is false.
 enum class PairAnswer : std::uint8_t {
@@ -64,12 +62,9 @@ struct Collisions {
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers);
 
-// ---- the predicates ----
-
 /// The shape of the hull of three corners. segment: the corners are collinear, not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
-/// The exact shape, by CGAL's collinearity predicate.
 Shape shape(const std::array<Vec3, 3>& corners);
 
 /// True iff the closed convex hulls share a point. Symmetric; the order of corners does not matter.
@@ -89,7 +84,6 @@ bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec
 /// How many triangles of the scene are segments or points.
 std::uint64_t degenerate_triangles(const Scene& scene);
 
-/// Options of decide().
 struct ExactQuestion {
   double clearance = 0;                                    // world units, finite, >= 0
   unsigned threads = std::thread::hardware_concurrency();  // 0 counts as 1; changes no answer
@@ -133,11 +127,6 @@ class FrameDecider {
   std::size_t decided() const { return decided_; }
 
  private:
-  std::vector<PairAnswer> answers_with_kept(const Scene& scene,
-                                            std::span<const TrianglePair> candidates,
-                                            const MovedCorners& moved,
-                                            const ExactQuestion& question);
-
   std::optional<std::uint64_t> frame_;  // frame of the answers
   double clearance_ = 0;
   bool neighbours_ = true;

@@ -52,8 +52,7 @@ std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int hei
 }
 
 bool bounded(const ExactPoint& point, float entry, float exit) {
-  if (std::isnan(entry) || std::isnan(exit)) return false;
-  if (std::isinf(entry) || std::isinf(exit)) return false;  // no kernel returns infinity
+  if (!std::isfinite(entry) || !std::isfinite(exit)) return false;  // no kernel returns infinity
   const mpq_class z = coordinate(point, 2);
   return mpq_class(entry) <= z && z <= mpq_class(exit);
 }

@@ -177,25 +177,6 @@ class Crossings {
   int count_ = 0;
 };
 
-/// Which corners are above the other triangle's plane, for each lane.
-class CornersAbove {
- public:
-  HWY_INLINE explicit CornersAbove(const AgainstPlanes& planes) {
-    for (int k = 0; k < 3; ++k) {
-      bits_[k] = bits_of(planes.a.value[k] > Real(0.0));
-      bits_[3 + k] = bits_of(planes.b.value[k] > Real(0.0));
-    }
-  }
-  HWY_INLINE const CornerOrder& order(int lane) const {
-    unsigned above = 0;
-    for (int k = 0; k < 6; ++k) above |= (bits_[k] >> lane & 1) << k;
-    return kCornerOrders[above];
-  }
-
- private:
-  std::array<unsigned, 6> bits_;
-};
-
 void filter_batches(const Scene& scene, std::span<const TrianglePair> pairs, double clearance,
                     std::span<Triage> answers) {
   Batch batch;
@@ -214,10 +195,16 @@ void filter_batches(const Scene& scene, std::span<const TrianglePair> pairs, dou
         answers[begin + from + i] = (apart >> i & 1) ? Triage::no : Triage::unknown;
       unsigned crossing = bits_of(planes.crossing) & ((1u << lanes) - 1);
       if (crossing == 0) continue;
-      const CornersAbove above(planes);
+      std::array<unsigned, 6> above;  // bit i: the corner is above the other plane in lane i
+      for (int k = 0; k < 3; ++k) {
+        above[k] = bits_of(planes.a.value[k] > Real(0.0));
+        above[3 + k] = bits_of(planes.b.value[k] > Real(0.0));
+      }
       for (; crossing != 0; crossing &= crossing - 1) {
         const int i = std::countr_zero(crossing);
-        crossings.add(batch, from + i, above.order(i), begin + from + i);
+        unsigned corners = 0;
+        for (int k = 0; k < 6; ++k) corners |= (above[k] >> i & 1) << k;
+        crossings.add(batch, from + i, kCornerOrders[corners], begin + from + i);
       }
     }
   }
@@ -226,10 +213,7 @@ void filter_batches(const Scene& scene, std::span<const TrianglePair> pairs, dou
 
 }  // namespace filters
 
-void filter_pairs_on_lanes(const Scene& scene, std::span<const TrianglePair> pairs,
-                           double clearance, std::span<Triage> answers) {
-  filters::filter_batches(scene, pairs, clearance, answers);
-}
+using filters::filter_batches;
 
 }  // namespace farcull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -254,11 +238,11 @@ Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
   return filters::filter_within<FilterBounds>(a, b, clearance);
 }
 
-HWY_EXPORT(filter_pairs_on_lanes);
+HWY_EXPORT(filter_batches);
 
 void filter_pairs(const Scene& scene, std::span<const TrianglePair> pairs, double clearance,
                   std::span<Triage> answers) {
-  HWY_DYNAMIC_DISPATCH(filter_pairs_on_lanes)(scene, pairs, clearance, answers);
+  HWY_DYNAMIC_DISPATCH(filter_batches)(scene, pairs, clearance, answers);
 }
 
 }  // namespace farcull

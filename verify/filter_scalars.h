@@ -107,6 +107,12 @@ inline Triple unit(const Triple& p) {
 /// The sign of a value with error at most `bound`: -1 or 1, or 0 if it is in doubt.
 inline int sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
+/// The sign of dot(normal.n, w), or 0 if it is in doubt.
+template <class Bounds>
+int side_of(const Normal& normal, const Triple& w) {
+  return sign(dot(normal.n, w), side_bound<Bounds>(normal, magnitudes(w)));
+}
+
 /// Bit i is set if the value of corner i is above 0.
 inline unsigned above(const Sides& sides) {
   return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
@@ -180,8 +186,7 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
   const double bound =
       Bounds::normals * dot(n.m, m.m) + Bounds::absolute * (sum(n.m) + sum(m.m) + 1);
   if (dot(n.n, m.n) < -bound) return Triage::no;
-  const int off = sign(dot(n.n, w), side_bound<Bounds>(n, magnitudes(w)));
-  return off != 0 ? Triage::no : Triage::unknown;
+  return side_of<Bounds>(n, w) != 0 ? Triage::no : Triage::unknown;
 }
 
 // ---- by distance ----
@@ -278,19 +283,20 @@ inline Vec3 extent_of(const Corners& a, const Corners& b) {
   return most;
 }
 
+/// The corners relative to a point.
+inline Corners relative_to(const Vec3& origin, const Corners& t) {
+  return {t[0] - origin, t[1] - origin, t[2] - origin};
+}
+
 /// Two points of the triangles, near each other, and the corners relative to a[0].
 struct Near {
   Corners s, t;
   Closest closest;
 };
 
-inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  Near out;
+inline Near near_points(const Corners& a, const Corners& b) {
+  Near out{relative_to(a[0], a), relative_to(a[0], b), {}};
   auto& [s, t, closest] = out;
-  for (int i = 0; i < 3; ++i) {
-    s[i] = a[i] - a[0];
-    t[i] = b[i] - a[0];
-  }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) offer_segments(s, i, t, j, closest);
   }
@@ -314,7 +320,7 @@ double gap_along(const Near& near, const Vec3& extent) {
 }
 
 template <class Bounds>
-Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+Triage filter_within(const Corners& a, const Corners& b, double clearance) {
   const Near near = near_points(a, b);
   const double squared = near.closest.squared;
   const Vec3 extent = extent_of(near.s, near.t);

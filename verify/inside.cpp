@@ -6,8 +6,6 @@
 // leaves a doubt.
 #include "verify/inside.h"
 
-#include <gmpxx.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,18 +16,19 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/random.h"
-#include "verify/closest_features.h"
 #include "verify/exact.h"
 #include "verify/filter_scalars.h"
+#include "verify/rational.h"
 
 namespace farcull {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
-using Rational = mpq_class;
-using Vector = closest::Vector<Rational>;
-
-Vector exact(const Vec3& p) { return {Rational(p[0]), Rational(p[1]), Rational(p[2])}; }
+using rational::cross;
+using rational::dot;
+using rational::exact;
+using rational::minus;
+using rational::Q3;
 
 /// The sign of d . (u x v) where u = p - x, v = q - x; if d_is_corner, d is a third corner, and the
 /// sign is that of (d - x) . (u x v).
@@ -37,14 +36,10 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
   const auto u = filters::difference(p, x), v = filters::difference(q, x);
   const filters::Triple w =
       d_is_corner ? filters::difference(d, x) : filters::Triple{d.x(), d.y(), d.z()};
-  const filters::Normal normal = filters::normal_of(u, v);
-  const int sign = filters::sign(filters::dot(normal.n, w),
-                                 filters::side_bound<FilterBounds>(normal, filters::magnitudes(w)));
+  const int sign = filters::side_of<FilterBounds>(filters::normal_of(u, v), w);
   if (sign != 0) return sign;
-  const Vector at = exact(x);
-  const Vector third = d_is_corner ? closest::minus(exact(d), at) : exact(d);
-  return sgn(closest::dot(
-      third, closest::cross(closest::minus(exact(p), at), closest::minus(exact(q), at))));
+  const Q3 at = exact(x), third = d_is_corner ? minus(exact(d), at) : exact(d);
+  return sgn(dot(third, cross(minus(exact(p), at), minus(exact(q), at))));
 }
 
 /// Whether the ray from x crosses the triangle: 0 for no, else 1 or -1 by the side that it comes
@@ -67,12 +62,11 @@ const Object& object_of(const Scene& scene, std::uint32_t object, const char* wh
 }
 
 bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
-  const Corners point = {x, x, x};
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const Corners t = scene.corners(object.first_triangle + k);
     const Vec3 lo = t[0].cwiseMin(t[1]).cwiseMin(t[2]), hi = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
     if ((lo.array() > x.array()).any() || (hi.array() < x.array()).any()) continue;
-    if (intersects(point, t)) return true;
+    if (intersects({x, x, x}, t)) return true;
   }
   return false;
 }
@@ -149,8 +143,7 @@ struct Edge {
 
 /// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
 /// returns false. Returns true if no call did.
-template <class Group>
-bool each_edge(std::span<const Edge> edges, const Group& group) {
+bool each_edge(std::span<const Edge> edges, const auto& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {
     }

@@ -1,4 +1,4 @@
-// Test cases that are hard for the kernels (verify/kernel_check.h).
+// Triangles, lines and solids that are hard for the exact offset (verify/kernel_check.h).
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,6 @@
 #include "verify/solid_lines.h"
 
 namespace farcull::minkowski_cases {
-
-// Triangles, lines and solids that are hard for the exact offset.
 
 using minkowski_line::Weights;
 using rational::Draws;
@@ -28,6 +26,12 @@ inline Triangle random_triangle(Draws& random, int kind) {
   const Vec3 at = random.cube(500);
   const auto all = [&](const std::function<Vec3(int)>& corner) {
     return Triangle{at + corner(0), at + corner(1), at + corner(2)};
+  };
+  const auto in_box = [&](double wide, double deep) {
+    return all([&](int) {
+      return Vec3(random.uniform(-wide, wide), random.uniform(-wide, wide),
+                  random.uniform(-deep, deep));
+    });
   };
   const double slope = random.uniform(0, 6.3);
   const Vec3 across(std::cos(slope), std::sin(slope), 0);
@@ -47,12 +51,8 @@ inline Triangle random_triangle(Draws& random, int kind) {
                     random.cube(off));
       });
     }
-    case 4: {
-      const double off = random.coin() ? 0 : std::abs(random.scaled(-50, -4));
-      return all([&](int) {
-        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-off, off));
-      });
-    }
+    case 4:
+      return in_box(20, random.coin() ? 0 : std::abs(random.scaled(-50, -4)));
     case 5: {
       const Vec3 p = random.cube(20);
       return {at, at + Vec3(0, 0, random.scaled(-10, 9)), at + p};
@@ -63,23 +63,15 @@ inline Triangle random_triangle(Draws& random, int kind) {
     }
     case 7:
       return {at, at, at};
-    case 8: {
-      const double most = std::pow(10, random.uniform(3, 9));
-      return all([&](int) {
-        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-most, most));
-      });
-    }
+    case 8:
+      return in_box(20, std::pow(10, random.uniform(3, 9)));
     case 9: {
       const double size = std::pow(10, -random.uniform(3, 12));
       const Vec3 centre(std::floor(at[0]) + 0.5, std::floor(at[1]) + 0.5, random.uniform(-1, 1));
       return {centre + random.cube(size), centre + random.cube(size), centre + random.cube(size)};
     }
-    case 10: {
-      const double most = std::pow(10, random.uniform(1, 9));
-      return all([&](int) {
-        return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-most, most));
-      });
-    }
+    case 10:
+      return in_box(1, std::pow(10, random.uniform(1, 9)));
     case 11:
       return all([&](int) {
         return Vec3(0.5 * random.below(20) - at[0] + std::floor(at[0]),

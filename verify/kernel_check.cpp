@@ -1,6 +1,5 @@
-// Draws cases by seed and index, and counts answers of kernels that are too small. An answer is an
-// interval of a line. For a box it must contain the part of the line in the box, for an exact
-// offset the points of the line that were found to lie in the solid.
+// Compares an answer about a box with the part of the line in the box, and one about an exact
+// offset with points of the line that were found to lie in the solid.
 #include "verify/kernel_check.h"
 
 #include <algorithm>

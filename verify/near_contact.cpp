@@ -15,7 +15,6 @@ namespace farcull {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
-using Integer = mpz_class;
 
 // ---- in doubles
 //
@@ -116,11 +115,7 @@ void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) 
 /// The contact of triangles that cross: the point of an edge. Empty if this point may be farther
 /// than 64 u R from the other triangle.
 std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
-  Corners s, t;
-  for (int i = 0; i < 3; ++i) {
-    s[i] = a[i] - a[0];
-    t[i] = b[i] - a[0];
-  }
+  const Corners s = filters::relative_to(a[0], a), t = filters::relative_to(a[0], b);
   Passing best;
   offer_passing(s, t, 0, best);
   offer_passing(t, s, 1, best);
@@ -138,7 +133,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
   NearContact out{
       .distance = closest.distance, .points = closest.points, .features = closest.features};
   const Scaled pair(a, b);
-  closest::Found<Integer> found;
+  closest::Found<mpz_class> found;
   const auto& [of_a, of_b] = closest.features;
   if (!closest::find(pair.a, of_a, pair.b, of_b, found))
     throw std::logic_error("exact_contact: these are no closest features");
@@ -149,7 +144,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
     weights = edge_weights(feature.index, 0);
     if (feature.kind == FeatureKind::vertex) continue;
     auto [l, m] = found.multiples[side];
-    Integer below = found.below;
+    mpz_class below = found.below;
     if (feature.kind == FeatureKind::edge) {
       weights[feature.index] = rounded_quotient(below - l, below, 0);
       weights[closest::edge_end(feature.index)] = rounded_quotient(l, below, 0);
@@ -170,9 +165,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
   }
   if (closest.squared.is_zero()) return out;
   // Each coordinate is rounded once to a double of at most 1, and the length has 4 roundings more.
-  long bits = 0;
-  for (const Integer& x : found.direction)
-    bits = std::max(bits, static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)));
+  const long bits = most_bits(found.direction);
   for (int k = 0; k < 3; ++k) out.normal[k] = rounded(found.direction[k], -bits);
   out.normal /= out.normal.norm();
   return out;

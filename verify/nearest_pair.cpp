@@ -27,11 +27,9 @@
 #include "verify/rounding.h"
 
 namespace farcull {
-
 namespace {
 
 using filters::DistanceBounds;
-
 using Triangle = std::array<Vec3, 3>;
 
 /// The closest points of a pair, to recognise pairs that have the same ones.
@@ -113,11 +111,6 @@ struct Candidate {
   DistanceBounds bounds;
 };
 
-DistanceBounds bounds_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  if (filter_planes(a, b) == Triage::yes) return {0, 0};
-  return filters::distance_bounds<FilterBounds>(a, b);
-}
-
 /// The pairs, in order, that can be the first of the nearest pairs. Leaves out pairs[0], which is
 /// at most `least` apart, and pairs with the same closest points (`same`), which come after
 /// pairs[0].
@@ -128,7 +121,9 @@ std::vector<Candidate> candidates_of(const Scene& scene, std::span<const Triangl
   for (std::size_t i = 1; i < pairs.size(); ++i) {
     const Triangle a = scene.corners(pairs[i].a), b = scene.corners(pairs[i].b);
     if (same.are_those_of(a, b)) continue;
-    const DistanceBounds bounds = bounds_of(a, b);
+    const DistanceBounds bounds = filter_planes(a, b) == Triage::yes
+                                      ? DistanceBounds{0, 0}
+                                      : filters::distance_bounds<FilterBounds>(a, b);
     if (bounds.lower > least) continue;
     least = std::min(least, bounds.upper);
     out.push_back({i, bounds});
@@ -147,13 +142,21 @@ double not_below(const Closest& closest) {
   return std::nextafter(closest.distance, std::numeric_limits<double>::infinity());
 }
 
-NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) {
+}  // namespace
+
+std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs) {
+  const FloatingPointGuard guard;
+  for (const TrianglePair& pair : pairs) {
+    if (std::max(pair.a, pair.b) >= scene.triangles.size())
+      throw std::logic_error("nearest_pair: a pair names a triangle that the scene lacks");
+  }
+  if (pairs.empty()) return std::nullopt;
   const auto corners = [&](std::size_t at) {
     return std::array{scene.corners(pairs[at].a), scene.corners(pairs[at].b)};
   };
   const auto [first_a, first_b] = corners(0);
   Closest closest = closest_points(first_a, first_b);
-  if (closest.squared.is_zero()) return {pairs[0], std::move(closest)};
+  if (closest.squared.is_zero()) return NearestPair{pairs[0], std::move(closest)};
   std::size_t best = 0, solved = 0;
   double at_most = not_below(closest);
   SamePoints same(first_a, first_b, closest);
@@ -161,9 +164,7 @@ NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) 
   std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
   // By lower bound, so that near pairs come early. The sort is stable, so pairs with lower bound 0
   // stay in order, and the first that touches ends the search.
-  std::stable_sort(left.begin(), left.end(), [](const Candidate& x, const Candidate& y) {
-    return x.bounds.lower < y.bounds.lower;
-  });
+  std::ranges::stable_sort(left, {}, [](const Candidate& c) { return c.bounds.lower; });
   for (const auto& [at, bounds] : left) {
     if (bounds.lower > at_most) break;  // all later ones are farther, too
     if (at_most == 0 && at > best) continue;
@@ -188,19 +189,7 @@ NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) 
     const auto [a, b] = corners(best);
     closest = closest_points(a, b);
   }
-  return {pairs[best], std::move(closest)};
-}
-
-}  // namespace
-
-std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs) {
-  const FloatingPointGuard guard;
-  for (const TrianglePair& pair : pairs) {
-    if (std::max(pair.a, pair.b) >= scene.triangles.size())
-      throw std::logic_error("nearest_pair: a pair names a triangle that the scene lacks");
-  }
-  if (pairs.empty()) return std::nullopt;
-  return nearest_of(scene, pairs);
+  return NearestPair{pairs[best], std::move(closest)};
 }
 
 }  // namespace farcull

@@ -44,16 +44,13 @@ Plane plane_of(const Corners& t) {
 
 /// The side of the plane of t that p is on: -1, 0 or 1.
 int side_of(const Corners& t, const Vec3& p) {
-  const auto w = filters::difference(p, t[0]);
   const filters::Normal n =
       filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
-  const int sign = filters::sign(filters::dot(n.n, w),
-                                 filters::side_bound<FilterBounds>(n, filters::magnitudes(w)));
+  const int sign = filters::side_of<FilterBounds>(n, filters::difference(p, t[0]));
   return sign != 0 ? sign : plane_of(t).side(exact(p));
 }
 
-template <class Visit>
-void for_triangles(const Scene& scene, std::uint32_t object, const Visit& visit) {
+void for_triangles(const Scene& scene, std::uint32_t object, const auto& visit) {
   const Object& o = scene.objects[object];
   for (std::uint32_t k = 0; k < o.triangle_count; ++k) visit(scene.corners(o.first_triangle + k));
 }
@@ -74,8 +71,6 @@ unsigned sides_of(const Scene& scene, std::uint32_t object, const Corners& t) {
   }
   return sides;
 }
-
-// ---- pieces ----
 
 using Polygon = std::vector<Q3>;  // convex
 
@@ -289,28 +284,6 @@ class PieceTest {
   std::size_t tests_ = 0;
 };
 
-/// Whether one of the points is inside; a point of the surface is left to the pieces.
-Overlap any_inside(const Scene& scene, std::uint32_t object, Surface surface,
-                   std::span<const Vec3> points) {
-  Overlap out = Overlap::no;
-  for (const Vec3& point : points) {
-    const Overlap here = overlap_at(scene, object, point, surface);
-    if (here == Overlap::yes) return here;
-    if (here == Overlap::unknown) out = here;
-  }
-  return out;
-}
-
-/// The contacts, sorted by their first triangle; if `second`, exchanged and sorted by their second.
-std::vector<TrianglePair> sorted_by(std::span<const TrianglePair> contacts, bool second) {
-  std::vector<TrianglePair> out(contacts.begin(), contacts.end());
-  if (second) {
-    for (TrianglePair& pair : out) std::swap(pair.a, pair.b);
-  }
-  std::ranges::sort(out);
-  return out;
-}
-
 }  // namespace
 
 bool plane_divides(const Scene& scene, ObjectPair objects, std::span<const TrianglePair> contacts) {
@@ -353,8 +326,12 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
     if (surface == Surface::open || surface == Surface::doubled) return Overlap::unknown;
   }
   PieceTest test(scene, objects);
+  std::vector<TrianglePair> sorted(contacts.begin(), contacts.end());
   for (const bool second : {false, true}) {
-    const std::vector<TrianglePair> sorted = sorted_by(contacts, second);
+    if (second) {
+      for (TrianglePair& pair : sorted) std::swap(pair.a, pair.b);
+    }
+    std::ranges::sort(sorted);
     for (std::size_t k = 0; k < sorted.size();) {
       std::vector<std::uint32_t> others;
       const std::uint32_t t = sorted[k].a;
@@ -363,10 +340,17 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
       if (answer != Overlap::no) return answer;
     }
   }
-  const Overlap a = any_inside(scene, objects.b, surfaces[1], parts_a);
-  const Overlap b = any_inside(scene, objects.a, surfaces[0], parts_b);
-  if (a == Overlap::yes || b == Overlap::yes) return Overlap::yes;
-  return a == Overlap::unknown ? a : b;
+  // A point of the surface is left to the pieces.
+  Overlap out = Overlap::no;
+  for (const bool second : {false, true}) {
+    for (const Vec3& point : second ? parts_b : parts_a) {
+      const Overlap here =
+          overlap_at(scene, second ? objects.a : objects.b, point, surfaces[second ? 0 : 1]);
+      if (here == Overlap::yes) return here;
+      if (here == Overlap::unknown) out = here;
+    }
+  }
+  return out;
 }
 
 }  // namespace farcull

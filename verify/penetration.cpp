@@ -33,8 +33,6 @@ const Vec3& farthest(const Points& points, const Vec3& direction) {
   return points[at];
 }
 
-// ---- polytopes of differences ----
-
 class Polytope {
  public:
   struct Face {
@@ -197,22 +195,20 @@ Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   return out;
 }
 
-/// The part of the ray from the origin that the cover holds, in plain doubles.
-std::array<double, 2> along_ray(const Cover& cover, const Vec3& direction) {
-  double from = -kInf, to = kInf;
-  for (const Cover::Side& side : cover.sides) {
-    const double slope = side.normal.dot(direction);
-    if (slope > 1e-14) to = std::min(to, side.distance / slope);
-    if (slope < -1e-14) from = std::max(from, side.distance / slope);
-    if (std::abs(slope) <= 1e-14 && side.distance < 0) return {0, 0};
-  }
-  return {from, to};
-}
-
-/// The distance from the origin along the ray up to which the covers hold it.
+/// The distance from the origin along the ray up to which the covers hold it, in plain doubles.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
-  std::vector<std::array<double, 2>> parts;
-  for (const Cover& cover : covers) parts.push_back(along_ray(cover, direction));
+  std::vector<std::array<double, 2>> parts;  // of the ray, one in each cover
+  for (const Cover& cover : covers) {
+    auto& [from, to] = parts.emplace_back(std::array{-kInf, kInf});
+    for (const Cover::Side& side : cover.sides) {
+      const double slope = side.normal.dot(direction);
+      if (slope > 1e-14) to = std::min(to, side.distance / slope);
+      if (slope < -1e-14) from = std::max(from, side.distance / slope);
+      if (std::abs(slope) > 1e-14 || side.distance >= 0) continue;
+      from = to = 0;
+      break;
+    }
+  }
   std::ranges::sort(parts);
   double out = 0;
   for (const auto& [from, to] : parts) {

@@ -4,12 +4,11 @@
 //
 // Upper bound: a translation after which the insides are certainly apart (separates()).
 //
-// Lower bound: from cores, convex sets inside the objects (verify/convex_core.h). Let A be a core
-// of object a and B one of object b. The differences of a point of B and a point of A form a
-// polytope, B - A. After each translation inside this polytope, a and b overlap. A search divides
-// the ball of translations shorter than the upper bound into boxes. A box is settled if one
-// polytope holds it. The depth is at least the distance of the nearest box that is not settled. As
-// the boxes become smaller, their middles are tried as translations.
+// Lower bound: from cores (verify/convex_core.h). If A is a core of a and B one of b, the objects
+// overlap after each translation in the polytope of the differences B - A. A search divides the
+// ball of translations shorter than the upper bound into boxes. A box is settled if one polytope
+// holds it. The depth is at least the distance of the nearest box that is not settled. As the boxes
+// become smaller, their middles are tried as translations.
 //
 // The expanding polytope algorithm (van den Bergen, Proximity Queries and Penetration Depth
 // Computation on 3D Game Objects, 2001) finds a polytope as a closed surface of triangles: each

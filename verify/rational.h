@@ -11,6 +11,7 @@
 
 #include "core/base/random.h"
 #include "core/scene/scene.h"
+#include "verify/closest_features.h"
 
 namespace farcull::rational {
 
@@ -18,11 +19,9 @@ using Q = mpq_class;
 using Q3 = std::array<Q, 3>;
 
 inline Q3 exact(const Vec3& p) { return {Q(p[0]), Q(p[1]), Q(p[2])}; }
-inline Q3 minus(const Q3& a, const Q3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Q dot(const Q3& a, const Q3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Q3 cross(const Q3& a, const Q3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using closest::cross;
+using closest::dot;
+using closest::minus;
 /// a + t (b - a)
 inline Q3 between(const Q3& a, const Q3& b, const Q& t) {
   Q3 out;

@@ -215,25 +215,16 @@ class Line {
       offer(on_edge(edge,
                     foot + sign * fz * std::sqrt(rho2 / (along2 + fz * fz)) / std::sqrt(along2)));
     }
-    Real3 u, v, n, q;
-    for (int k = 0; k < 3; ++k) {
-      u[k] = v_[1][k] - v_[0][k];
-      v[k] = v_[2][k] - v_[0][k];
-    }
-    const auto cross_of = [](const Real3& a, const Real3& b) {
-      return Real3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    };
-    const auto dot_of = [](const Real3& a, const Real3& b) {
-      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    };
-    n = cross_of(u, v);
-    const Real size2 = dot_of(n, n);
+    using closest::cross, closest::dot;
+    const Real3 u = closest::minus(v_[1], v_[0]), v = closest::minus(v_[2], v_[0]);
+    const Real3 n = cross(u, v);
+    const Real size2 = dot(n, n);
     if (size2 == 0 || n[2] == 0) return found;
     const Real scale = sign * (n[2] > 0 ? 1 : -1) / std::sqrt(size2);
     const Real qx = dx_ - v_[0][0], qy = dy_ - v_[0][1];
     const Real qz = (r_ / scale - n[0] * qx - n[1] * qy) / n[2];
-    q = {qx - r_ * scale * n[0], qy - r_ * scale * n[1], qz - r_ * scale * n[2]};
-    offer(weights(dot_of(cross_of(q, v), n) / size2, dot_of(cross_of(u, q), n) / size2));
+    const Real3 q = {qx - r_ * scale * n[0], qy - r_ * scale * n[1], qz - r_ * scale * n[2]};
+    offer(weights(dot(cross(q, v), n) / size2, dot(cross(u, q), n) / size2));
     return found;
   }
 

@@ -17,8 +17,6 @@ constexpr long kDigits = 53;
 constexpr long kLeastExponent = -1074;  // of the last bit of a double
 constexpr long kKept = kDigits + 2;
 
-long bits(const mpz_class& x) { return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)); }
-
 /// x 2^k, cut off where k < 0.
 mpz_class shifted(const mpz_class& x, long k) {
   mpz_class out;
@@ -33,13 +31,8 @@ mpz_class shifted(const mpz_class& x, long k) {
 /// |num| 2^k / den, cut off to an integer; sets `more` if something was cut off.
 mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool& more) {
   mpz_class quotient, rest;
-  const mpz_class n = shifted(num, std::max(k, 0L));
-  if (k >= 0) {
-    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), den.get_mpz_t());
-  } else {
-    const mpz_class d = shifted(den, -k);
-    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), d.get_mpz_t());
-  }
+  const mpz_class n = shifted(num, std::max(k, 0L)), d = shifted(den, std::max(-k, 0L));
+  mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), d.get_mpz_t());
   more = rest != 0;
   return quotient;
 }
@@ -55,7 +48,7 @@ mpz_class with_last_bit(const mpz_class& x, bool more, int sign) {
 double rounded(const mpz_class& m, long exponent) {
   if (m == 0) return 0;
   mpz_class magnitude = abs(m);
-  const long last = std::max(bits(magnitude) + exponent - kDigits, kLeastExponent);
+  const long last = std::max(bits_of(magnitude) + exponent - kDigits, kLeastExponent);
   const long drop = last - exponent;
   if (drop > 0) {
     // Adds half of the last bit that is kept, and cuts off the sum. Of two equally near numbers the
@@ -77,7 +70,7 @@ double rounded(const mpz_class& m, long exponent) {
 
 double rounded_quotient(const mpz_class& num, const mpz_class& den, long exponent) {
   if (num == 0) return 0;
-  const long k = kKept + 1 + bits(den) - bits(num);
+  const long k = kKept + 1 + bits_of(den) - bits_of(num);
   bool more = false;
   const mpz_class quotient = cut_quotient(num, den, k, more);
   return rounded(with_last_bit(quotient, more, sgn(num)), exponent - k - 1);
@@ -85,7 +78,7 @@ double rounded_quotient(const mpz_class& num, const mpz_class& den, long exponen
 
 double rounded_root(const mpz_class& num, const mpz_class& den, long exponent) {
   if (num == 0) return 0;
-  long k = 2 * kKept + 1 + bits(den) - bits(num);
+  long k = 2 * kKept + 1 + bits_of(den) - bits_of(num);
   if ((exponent - k) % 2 != 0) ++k;
   bool more = false;
   const mpz_class square = cut_quotient(num, den, k, more);
@@ -101,11 +94,8 @@ SquaredDistance::SquaredDistance(std::shared_ptr<const Value> value) : value_(st
 SquaredDistance SquaredDistance::of(double distance) {
   if (distance == 0) return {};
   const int exponent = lowest_bit(distance);
-  auto value = std::make_shared<Value>();
-  value->num = integer_of(distance, exponent);
-  value->num *= value->num;
-  value->exponent = 2L * exponent;
-  return SquaredDistance(std::move(value));
+  const mpz_class whole = integer_of(distance, exponent);
+  return SquaredDistance(std::make_shared<Value>(Value{whole * whole, 1, 2L * exponent}));
 }
 
 double SquaredDistance::root() const {

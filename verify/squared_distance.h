@@ -32,6 +32,20 @@ double rounded_quotient(const mpz_class& num, const mpz_class& den, long exponen
 /// The root of num / den times 2^exponent, num >= 0 and den > 0, rounded in the same way.
 double rounded_root(const mpz_class& num, const mpz_class& den, long exponent);
 
+/// The point of the coordinates x / w times 2^exponent, w > 0, each rounded in the same way.
+inline Vec3 rounded_point(const std::array<mpz_class, 3>& x, const mpz_class& w, long exponent) {
+  return {rounded_quotient(x[0], w, exponent), rounded_quotient(x[1], w, exponent),
+          rounded_quotient(x[2], w, exponent)};
+}
+
+/// How many bits the magnitude has; 1 for 0.
+inline long bits_of(const mpz_class& x) {
+  return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
+}
+inline long most_bits(const std::array<mpz_class, 3>& x) {
+  return std::max({bits_of(x[0]), bits_of(x[1]), bits_of(x[2])});
+}
+
 /// The exponent of the lowest bit of x that is 1. Precondition: x is not 0.
 inline int lowest_bit(double x) {
   int exponent = 0;

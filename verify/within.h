@@ -1,6 +1,5 @@
 // Is the distance of two triangles at most a clearance? Filters in doubles answer first; exact
-// arithmetic answers if they leave a doubt. Triangles are as in verify/exact.h. For the sources of
-// verify/exact.h alone.
+// arithmetic answers if they leave a doubt. Triangles are as in verify/exact.h.
 #pragma once
 
 #include <array>

@@ -78,6 +78,21 @@ std::pair<int, int> pixels(double lo, double hi, int size) {
           std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
 }
 
+/// Calls visit(pixel, centre) for the pixels whose centres lie in the box of the points.
+template <std::size_t count, class Visit>
+void for_pixels(const Window& window, const Point (&points)[count], const Visit& visit) {
+  const auto [left, right] = std::ranges::minmax(points, {}, &Point::x);
+  const auto [low, high] = std::ranges::minmax(points, {}, &Point::y);
+  const auto [x0, x1] = pixels(left.x, right.x, window.width);
+  const auto [y0, y1] = pixels(low.y, high.y, window.height);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      visit(static_cast<std::size_t>(y) * window.width + x,
+            Point{x + 0.5 - 0.5 * window.width, y + 0.5 - 0.5 * window.height});
+    }
+  }
+}
+
 }  // namespace
 
 WorstCanvas::WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options)
@@ -121,27 +136,6 @@ float WorstCanvas::held(float z, Verb verb) const {
   return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }
 
-template <class Visit>
-void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) const {
-  const int width = window_.width, height = window_.height;
-  const std::array<float, 12>& t = drawables_->triangles[element];
-  const Point a = {t[0], t[1]}, b = {t[4], t[5]}, c = {t[8], t[9]};
-  const double area = cross(a, b, c);
-  if (area == 0) return;
-  const auto [x0, x1] = pixels(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width);
-  const auto [y0, y1] = pixels(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height);
-  for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) {
-      const Point p = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
-      const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area,
-                   wc = cross(a, b, p) / area;
-      if (wa <= 0 || wb <= 0 || wc <= 0) continue;
-      const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
-      visit(static_cast<std::size_t>(y) * width + x, z, held(z));
-    }
-  }
-}
-
 // True if the pixel centre is inside the proxy for all roundings that the assumptions allow.
 bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, double cy) const {
   const Point c = {cx, cy};
@@ -164,49 +158,42 @@ bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, doub
   return true;
 }
 
-template <class Visit>
-void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const {
-  const int width = window_.width, height = window_.height;
-  const Proxy& proxy = drawables_->proxies[element];
-  Point nominal[4];
-  double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
-  for (int i = 0; i < 4; ++i) {
-    nominal[i] = {proxy.corners[2 * i], proxy.corners[2 * i + 1]};
-    for (int k = 0; k < 2; ++k) {
-      const double x = proxy.corners[2 * i + k];
-      lo[k] = std::min(lo[k], x);
-      hi[k] = std::max(hi[k], x);
-    }
-  }
-  const double orientation = cross(nominal[0], nominal[1], nominal[2]) > 0 ? 1 : -1;
-  const auto [x0, x1] = pixels(lo[0], hi[0], width);
-  const auto [y0, y1] = pixels(lo[1], hi[1], height);
-  for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) {
-      const Point c = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
-      if (!covers(proxy, orientation, c.x, c.y)) continue;
-      float entry, exit;
-      if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid,
-                                 entry, exit))
-        continue;
-      const float z = verb == Verb::store ? entry : exit;
-      visit(static_cast<std::size_t>(y) * width + x, z, held(z, verb));
-    }
-  }
-}
-
 // Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
 // is the value that the depth buffer stores for it, or compares with its own.
-template <class Visit>
-void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const auto& visit) const {
   if (element == kEverywhere) {
     const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) visit(pixel, 0, 0);
-  } else if (drawables_->mode == DepthMode::fixed) {
-    rasterize_triangle(element, visit);
-  } else {
-    rasterize_proxy(element, verb, visit);
+    return;
   }
+  if (drawables_->mode == DepthMode::fixed) {
+    const std::array<float, 12>& t = drawables_->triangles[element];
+    const Point corners[] = {{t[0], t[1]}, {t[4], t[5]}, {t[8], t[9]}};
+    const double area = cross(corners[0], corners[1], corners[2]);
+    if (area == 0) return;
+    for_pixels(window_, corners, [&](std::size_t pixel, const Point& p) {
+      const double wa = cross(corners[1], corners[2], p) / area;
+      const double wb = cross(corners[2], corners[0], p) / area;
+      const double wc = cross(corners[0], corners[1], p) / area;
+      if (wa <= 0 || wb <= 0 || wc <= 0) return;
+      const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
+      visit(pixel, z, held(z));
+    });
+    return;
+  }
+  const Proxy& proxy = drawables_->proxies[element];
+  Point nominal[4];
+  for (int i = 0; i < 4; ++i) nominal[i] = {proxy.corners[2 * i], proxy.corners[2 * i + 1]};
+  const double orientation = cross(nominal[0], nominal[1], nominal[2]) > 0 ? 1 : -1;
+  for_pixels(window_, nominal, [&](std::size_t pixel, const Point& c) {
+    if (!covers(proxy, orientation, c.x, c.y)) return;
+    float entry, exit;
+    if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid, entry,
+                               exit))
+      return;
+    const float z = verb == Verb::store ? entry : exit;
+    visit(pixel, z, held(z, verb));
+  });
 }
 
 std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {

@@ -49,13 +49,8 @@ class WorstCanvas final : public Canvas {
   std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
 
  private:
-  template <class Visit>
-  void rasterize_triangle(std::uint32_t element, const Visit& visit) const;
   bool covers(const Proxy& proxy, double orientation, double cx, double cy) const;
-  template <class Visit>
-  void rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const;
-  template <class Visit>
-  void rasterize(std::uint32_t element, Verb verb, const Visit& visit) const;
+  void rasterize(std::uint32_t element, Verb verb, const auto& visit) const;
   float held(float z) const;
   float held(float z, Verb verb) const;
 

@@ -62,6 +62,13 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
+/// The text as printable ASCII of at most `most` characters, for a message; "..." if it is longer.
+inline std::string printable(std::string_view text, std::size_t most) {
+  std::string out;
+  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
+  return text.size() > most ? out + "..." : out;
+}
+
 /// The reason in a message of nlohmann-json, without its beginning such as
 /// "[json.exception.parse_error.101] parse error at line 1, column 2: ".
 inline std::string_view json_fault(std::string_view message) {

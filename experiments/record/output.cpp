@@ -351,8 +351,7 @@ std::string csv_cell(const std::string& text) {
 }
 
 std::string pairs_header(const Scene& scene, const PairColumns& columns) {
-  std::string header =
-      columns.numbers ? pair_list_header(columns.numbers->self) : pair_list_header(scene);
+  std::string header = pair_list_header(columns.numbers ? columns.numbers->self : has_self(scene));
   header.pop_back();
   if (columns.contacts) header += ",contact";
   if (columns.segments) header += ",x0,y0,z0,x1,y1,z1,polygon";

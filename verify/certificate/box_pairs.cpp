@@ -6,8 +6,6 @@
 
 namespace farcull {
 
-// The tree divides at the median of the centres, along the axis in which they spread most.
-
 BoundsTree::Bounds BoundsTree::bounds_of(const std::array<Vec3, 3>& corners) {
   Bounds out;
   for (int k = 0; k < 3; ++k) {
@@ -28,22 +26,25 @@ BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The places where the tree divides change only the time of a query, not its answer, since a query
-// looks below every node whose box it meets.
+// The tree divides at the median of the centres, along the axis in which they spread most. These
+// places change only the time of a query, not its answer, since a query looks below every node
+// whose box it meets.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;
   const auto to = from + count;
   Node node{.bounds = bounds[*from], .first = first, .count = count};
   Bounds centres;  // box of the centres; adds halves, since a sum may overflow
+  const auto centre = [&](std::uint32_t t, int k) {
+    return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2;
+  };
   for (int k = 0; k < 3; ++k) {
-    const auto centre = [&](std::uint32_t t) { return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2; };
-    centres.lo[k] = centres.hi[k] = centre(*from);
+    centres.lo[k] = centres.hi[k] = centre(*from, k);
     for (auto t = from; t != to; ++t) {
       node.bounds.lo[k] = std::min(node.bounds.lo[k], bounds[*t].lo[k]);
       node.bounds.hi[k] = std::max(node.bounds.hi[k], bounds[*t].hi[k]);
-      centres.lo[k] = std::min(centres.lo[k], centre(*t));
-      centres.hi[k] = std::max(centres.hi[k], centre(*t));
+      centres.lo[k] = std::min(centres.lo[k], centre(*t, k));
+      centres.hi[k] = std::max(centres.hi[k], centre(*t, k));
     }
   }
   const auto [least, last] = std::minmax_element(from, to);
@@ -57,11 +58,8 @@ void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
     for (int k = 1; k < 3; ++k) {
       if (spread(k) > spread(widest)) widest = k;
     }
-    const auto centre = [&](std::uint32_t t) {
-      return bounds[t].lo[widest] / 2 + bounds[t].hi[widest] / 2;
-    };
-    std::nth_element(from, from + count / 2, to,
-                     [&](std::uint32_t s, std::uint32_t t) { return centre(s) < centre(t); });
+    std::ranges::nth_element(from, from + count / 2, to, {},
+                             [&](std::uint32_t t) { return centre(t, widest); });
     add(first, count / 2);
     add(first + count / 2, count - count / 2);
   }

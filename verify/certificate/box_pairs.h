@@ -17,8 +17,7 @@
 namespace farcull {
 
 /// Trees of boxes over triangles. Boxes are minima and maxima of the coordinates as given, so
-/// nothing is rounded. verify/accounting has a tree of its own, since it compares the pairs that
-/// both find.
+/// nothing is rounded.
 struct BoundsTree {
   struct Bounds {
     std::array<double, 3> lo, hi;
@@ -53,15 +52,12 @@ struct BoundsTree {
   std::vector<Node> nodes;
 };
 
-// ---- the pairs that a certificate is about ----
-
 /// All pairs of triangles that count (of different objects, and of one object where it is `self`)
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
-/// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
-/// With a clearance > 0 (world units, finite): the pairs whose boxes are no farther apart than the
-/// clearance along any axis, by differences in double. With a tile: only those of these pairs that
-/// belong to it. Memory O(triangles). Precondition: validate() accepts the scene. The scene must
-/// outlive the object.
+/// are only compared. With a clearance > 0 (world units, finite): the pairs whose boxes are no
+/// farther apart than the clearance along any axis, by differences in double. With a tile: only
+/// those of these pairs that belong to it. Memory O(triangles). Precondition: validate() accepts
+/// the scene. The scene must outlive the object.
 class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene, double clearance = 0, const Tile& tile = {});

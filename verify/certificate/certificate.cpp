@@ -56,8 +56,8 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
     return !kept && integers.meets_beyond_shared() ? kMeets : flag | kNeighbours;
   if (const int guess = likely_direction(a, b, clearance); integers.separated_by(guess))
     return flag | guess;
-  const std::optional<int> direction = integers.separating_direction();
-  if (direction) return flag | *direction;
+  if (const std::optional<int> direction = integers.separating_direction())
+    return flag | *direction;
   return kept ? kKept : kMeets;
 }
 

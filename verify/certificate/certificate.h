@@ -10,10 +10,6 @@
 // distance D or less", "overlap" means "are no farther apart than D", and "disjoint" means "farther
 // apart than D"; neighbours, whose distance is 0, are decided as without a clearance.
 //
-// Nothing is proved about the run: neither how it came to its answer (Run) nor which pairs it kept.
-// A certificate is refuted if it calls a pair culled that meets. If it calls such a pair kept, its
-// claim about the scene is true, whatever the run did.
-//
 // The certificate of a tile (docs/tiles.md) is only about the pairs that belong to the tile. The
 // certificates of tiles that together cover an axis from end to end prove the whole list.
 #pragma once
@@ -24,6 +20,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -51,8 +48,7 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// The pairs that the scene does not ask about (not_asked()). The claims do not cover them.
-  struct Unasked {
+  struct Unasked {  // as NotAsked
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;
     bool operator==(const Unasked&) const = default;
@@ -108,6 +104,15 @@ struct Certificate {
   bool operator==(const Certificate&) const = default;
 };
 
+/// The counts of the claims by their names in a certificate.
+inline constexpr std::pair<const char*, std::uint64_t Certificate::Claims::*> kClaims[] = {
+    {"box_pairs", &Certificate::Claims::box_pairs},
+    {"kept", &Certificate::Claims::kept},
+    {"culled", &Certificate::Claims::culled},
+    {"separated", &Certificate::Claims::separated},
+    {"neighbours", &Certificate::Claims::neighbours},
+    {"meeting", &Certificate::Claims::meeting}};
+
 constexpr std::uint8_t kMeets = 38;
 constexpr std::uint8_t kNeighbours = 39;
 constexpr std::uint8_t kKept = 0x40;
@@ -122,7 +127,6 @@ struct WholeScene {
   Certificate::Unasked not_asked;
 };
 
-/// The key of the scene, and what the scene does not ask about.
 Certificate::SceneKey key_of(const Scene& scene);
 Certificate::Unasked unasked_of(const Scene& scene);
 
@@ -181,7 +185,8 @@ struct CheckResult {
 ///   meaning, its direction does not separate the pair (which is disjoint), or it does not say that
 ///   neighbours meet only in what they share.
 /// - proved: neither. So the pairs of the list meet, and no others that count. The check does not
-///   prove which pairs the run kept, nor anything else in Run.
+///   prove which pairs the run kept, nor anything else in Run. If a pair that meets is called kept,
+///   the claim about the scene is true, whatever the run did.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
 /// With `whole`, the scene has the triangles that meet the tile, and the check is about the pairs
 /// that belong to it; the certificate has to be of this tile and of the whole scene.

@@ -29,8 +29,6 @@ enum class EvidenceFault : std::uint8_t {
   neighbours,  // neighbours meet only in what they share, but are claimed to meet
 };
 
-bool refutes(EvidenceFault finding) { return finding >= EvidenceFault::culled_meets; }
-
 enum class Kind : std::uint8_t { separated, neighbours, meeting };
 
 struct Decision {
@@ -127,17 +125,12 @@ std::vector<std::string> unattested_of(const Certificate::Run& run) {
 
 std::string wrong_count(const Certificate& certificate, const Certificate::Unasked& unasked,
                         const Certificate::Claims& found) {
-  using Claims = Certificate::Claims;
-  const Claims& claimed = certificate.claims;
   if (certificate.not_asked != unasked) {
     return "not_asked is not what the scene leaves out: " + std::to_string(unasked.pairs) +
            " pairs inside " + std::to_string(unasked.objects) + " objects";
   }
-  constexpr std::pair<const char*, std::uint64_t Claims::*> kCounts[] = {
-      {"box_pairs", &Claims::box_pairs},   {"kept", &Claims::kept},
-      {"culled", &Claims::culled},         {"separated", &Claims::separated},
-      {"neighbours", &Claims::neighbours}, {"meeting", &Claims::meeting}};
-  for (const auto& [name, count] : kCounts) {
+  const Certificate::Claims& claimed = certificate.claims;
+  for (const auto& [name, count] : kClaims) {
     if (claimed.*count != found.*count) {
       return std::string("the count ") + name + " is " + std::to_string(claimed.*count) +
              " and should be " + std::to_string(found.*count);
@@ -170,7 +163,7 @@ class Tally {
     if (decision.finding == EvidenceFault::as_claimed) return;
     // Names the first pair that refutes. As long as there is none, names the first that is not
     // proved.
-    const bool refuted = refutes(decision.finding);
+    const bool refuted = decision.finding >= EvidenceFault::culled_meets;
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
     result_.pair = pair;
@@ -243,9 +236,9 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
 
 // Why the certificate is of another scene; empty if the keys are the same except for the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
-  const auto differ = [](const char* what, const std::string& one, const std::string& other) {
-    return std::string("the certificate is of another scene: ") + what + " " + one + ", given " +
-           other;
+  const auto differ = [](const std::string& what, const std::string& one,
+                         const std::string& other) {
+    return "the certificate is of another scene: " + what + " " + one + ", given " + other;
   };
   const auto differ_in = [&](const char* what, std::uint64_t one, std::uint64_t other) {
     return differ(what, std::to_string(one), std::to_string(other));

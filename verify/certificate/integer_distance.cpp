@@ -3,9 +3,7 @@
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -20,129 +18,34 @@ namespace farcull {
 
 using namespace integer;
 
+enum class IntegerSurface : std::uint8_t { open, closed, oriented };
+
 namespace {
 
-constexpr int kFeatures = 7;
-constexpr int kFace = 6;
-
-bool is_corner(int feature) { return feature < 3; }
+constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
 /// Constructs the only two points of these features that can be nearest points, if no earlier pair
 /// of features has nearest points. False if there are no such points.
-bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int of_a, int of_b) {
-  const auto& [a, b, exponent] = pair;
-  if (is_corner(of_a)) {
+bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
+               int of_a, int of_b) {
+  if (of_a < kFirstEdge) {
     on_a.corner(a, of_a);
-    if (is_corner(of_b)) return on_b.corner(b, of_b);
+    if (of_b < kFirstEdge) return on_b.corner(b, of_b);
     if (of_b == kFace) return on_b.foot_on_plane(b, a[of_a]);
     return on_b.foot_on_edge(b, of_b - 3, a[of_a]);
   }
-  if (is_corner(of_b)) {
-    on_b.corner(b, of_b);
-    if (of_a == kFace) return on_a.foot_on_plane(a, b[of_b]);
-    return on_a.foot_on_edge(a, of_a - 3, b[of_b]);
-  }
-  if (of_a == kFace) {
-    return of_b != kFace && on_a.edge_and_plane(b, of_b - 3, a) &&
-           on_b.edge_and_plane(b, of_b - 3, a);
-  }
+  if (of_a == kFace && of_b == kFace) return false;
+  if (of_b < kFirstEdge || of_a == kFace) return construct(on_b, on_a, b, a, of_b, of_a);
   if (of_b == kFace)
     return on_a.edge_and_plane(a, of_a - 3, b) && on_b.edge_and_plane(a, of_a - 3, b);
   return on_a.edge_and_edge(a, of_a - 3, b, of_b - 3) &&
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-/// Whether x is the rounded fraction: whether the fraction lies between the middle of x and the
-/// next lower double and the middle of x and the next higher double.
-bool is_rounded(double x, const mpq_class& exact) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
-  const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
-  // 2^1024 replaces infinity.
-  const auto rational = [](double y) {
-    return std::isfinite(y) ? mpq_class(y) : mpq_class((y > 0 ? 1 : -1) * (mpz_class(1) << 1024));
-  };
-  const auto beside = [&](double next) {
-    return cmp(exact, mpq_class((rational(x) + rational(next)) / 2));
-  };
-  const int below = x == -kInfinity ? 1 : beside(std::nextafter(x, -kInfinity));
-  const int above = x == kInfinity ? -1 : beside(std::nextafter(x, kInfinity));
-  return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
-}
-
-}  // namespace
-
-bool is_rounded(const Vec3& x, const FractionPoint& point) {
-  for (int k = 0; k < 3; ++k) {
-    mpq_class exact(point.over[static_cast<std::size_t>(k)], point.under);
-    exact.canonicalize();
-    if (point.exponent >= 0) {
-      exact <<= static_cast<mp_bitcnt_t>(point.exponent);
-    } else {
-      exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
-    }
-    exact += mpq_class(point.from[k]);
-    if (!is_rounded(x[k], exact)) return false;
-  }
-  return true;
-}
-
-IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  thread_local PointSearch on_a, on_b;
-  const ScaledPair pair = scaled(a, b);
-  for (int of_a = 0; of_a < kFeatures; ++of_a) {
-    for (int of_b = 0; of_b < kFeatures; ++of_b) {
-      // The construction is not trusted: the points count only if they lie in the triangles and are
-      // proved nearest.
-      if (!construct(on_a, on_b, pair, of_a, of_b) || !on_a.is_nearest(on_b, pair.a, pair.b) ||
-          !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b)) {
-        continue;
-      }
-      IntegerDistance out;
-      on_a.squared_distance(on_b, out.squared.over, out.squared.under);
-      if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
-      if (pair.exponent < 0) out.squared.under <<= -2 * pair.exponent;
-      out.features = {static_cast<std::uint8_t>(of_a), static_cast<std::uint8_t>(of_b)};
-      out.points = {FractionPoint{on_a.point(), on_a.scale(), pair.exponent, a[0]},
-                    FractionPoint{on_b.point(), on_b.scale(), pair.exponent, a[0]}};
-      return out;
-    }
-  }
-  throw std::logic_error("integer_distance: no two features hold nearest points");
-}
-
-bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
-               bool or_as_far) {
-  if (or_as_far && length.squared.over == 0) return true;
-  thread_local Scratch<mpz_class> s;
-  const ScaledPair pair = scaled(a, b);
-  Fraction limit = length.squared;
-  if (pair.exponent > 0) limit.under <<= 2 * pair.exponent;
-  if (pair.exponent < 0) limit.over <<= -2 * pair.exponent;
-  const auto shows = [&](int direction) {
-    make_direction(s, pair.a, pair.b, direction);
-    return has_gap(s, pair.a, pair.b) && gap_reaches(s, limit.over, limit.under, or_as_far);
-  };
-  const int likely = likely_direction(a, b, length.above);
-  if (shows(likely)) return true;
-  for (int n = 0; n < kDirections; ++n) {
-    // The directions of the lowest degree first.
-    const int direction = n < 9 ? 29 + n : n - 9;
-    if (direction != likely && shows(direction)) return true;
-  }
-  return false;
-}
-
-enum class IntegerSurface : std::uint8_t { open, closed, oriented };
-
 // Counts the crossings along a ray in the direction of the first axis. The ray starts a little
 // beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
 // infinitely small. So the ray meets no edge, and one ray is enough. The sign of a polynomial in e
 // is that of its coefficient of lowest degree that is not 0.
-
-namespace {
-
-using integer::BigVector;
 
 /// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
 /// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ in
@@ -157,8 +60,8 @@ int side_of_edge(const BigVector& p, const BigVector& q) {
 mpz_class determinant(const std::array<BigVector, 3>& t) {
   BigVector product;
   mpz_class out;
-  integer::cross(product, t[1], t[2]);
-  integer::dot(out, t[0], product);
+  cross(product, t[1], t[2]);
+  dot(out, t[0], product);
   return out;
 }
 
@@ -180,7 +83,7 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
     if (!may_cross(t, x)) continue;
-    const integer::ScaledPair pair = integer::scaled({x, x, x}, t);  // pair.b: t relative to x
+    const ScaledPair pair = scaled({x, x, x}, t);  // pair.b: t relative to x
     const int side = side_of_edge(pair.b[0], pair.b[1]);
     if (side == 0 || side_of_edge(pair.b[1], pair.b[2]) != side ||
         side_of_edge(pair.b[2], pair.b[0]) != side) {
@@ -199,27 +102,15 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
 using Place = std::array<double, 3>;
 
 IntegerSurface mesh_of(const Scene& scene, const Object& object) {
-  std::vector<Place> places;  // each once
-  const auto place_of = [](const Vec3& p) {
-    return Place{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0};  // no -0.0
-  };
+  std::vector<std::tuple<Place, Place, bool>> edges;  // lower end, upper end, upwards
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    for (const Vec3& p : scene.corners(object.first_triangle + k)) places.push_back(place_of(p));
-  }
-  std::ranges::sort(places);
-  const auto rest = std::ranges::unique(places);
-  places.erase(rest.begin(), rest.end());
-  std::vector<std::tuple<std::size_t, std::size_t, bool>> edges;  // lower end, upper end, upwards
-  for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-    std::array<std::size_t, 3> at{};
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    std::array<Place, 3> at;
+    for (std::size_t i = 0; i < 3; ++i)
+      at[i] = {t[i].x() + 0.0, t[i].y() + 0.0, t[i].z() + 0.0};  // no -0.0
     for (std::size_t i = 0; i < 3; ++i) {
-      at[i] = static_cast<std::size_t>(std::ranges::lower_bound(places, place_of(t[i])) -
-                                       places.begin());
-    }
-    if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t from = at[i], to = at[(i + 1) % 3];
+      const Place &from = at[i], &to = at[(i + 1) % 3];
       edges.emplace_back(std::min(from, to), std::max(from, to), from < to);
     }
   }
@@ -269,6 +160,65 @@ std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) 
 }
 
 }  // namespace
+
+bool is_rounded(const Vec3& x, const FractionPoint& point) {
+  for (int k = 0; k < 3; ++k) {
+    mpq_class exact(point.over[static_cast<std::size_t>(k)], point.under);
+    exact.canonicalize();
+    if (point.exponent >= 0) {
+      exact <<= static_cast<mp_bitcnt_t>(point.exponent);
+    } else {
+      exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
+    }
+    exact += mpq_class(point.from[k]);
+    if (std::isnan(x[k]) || (x[k] == 0 && std::signbit(x[k]))) return false;
+    if (!is_nearest_double(x[k], [&](double next) {
+          return cmp(exact, mpq_class((rational(x[k]) + rational(next)) / 2));
+        }))
+      return false;
+  }
+  return true;
+}
+
+IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  thread_local PointSearch on_a, on_b;
+  const ScaledPair pair = scaled(a, b);
+  for (int of_a = 0; of_a < kFeatures; ++of_a) {
+    for (int of_b = 0; of_b < kFeatures; ++of_b) {
+      // The construction is not trusted: the points count only if they lie in the triangles and are
+      // proved nearest.
+      if (!construct(on_a, on_b, pair.a, pair.b, of_a, of_b) ||
+          !on_a.is_nearest(on_b, pair.a, pair.b) || !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b))
+        continue;
+      IntegerDistance out;
+      on_a.squared_distance(on_b, out.squared.over, out.squared.under);
+      if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
+      if (pair.exponent < 0) out.squared.under <<= -2 * pair.exponent;
+      out.features = {static_cast<std::uint8_t>(of_a), static_cast<std::uint8_t>(of_b)};
+      out.points = {FractionPoint{on_a.point(), on_a.scale(), pair.exponent, a[0]},
+                    FractionPoint{on_b.point(), on_b.scale(), pair.exponent, a[0]}};
+      return out;
+    }
+  }
+  throw std::logic_error("integer_distance: no two features hold nearest points");
+}
+
+bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
+               bool or_as_far) {
+  if (or_as_far && length.squared.over == 0) return true;
+  thread_local Scratch<mpz_class> s;
+  const ScaledPair pair = scaled(a, b);
+  Fraction limit = length.squared;
+  if (pair.exponent > 0) limit.under <<= 2 * pair.exponent;
+  if (pair.exponent < 0) limit.over <<= -2 * pair.exponent;
+  const auto shows = [&](int direction) {
+    make_direction(s, pair.a, pair.b, direction);
+    return has_gap(s, pair.a, pair.b) && gap_reaches(s, limit.over, limit.under, or_as_far);
+  };
+  const int likely = likely_direction(a, b, length.above);
+  if (shows(likely)) return true;
+  return std::ranges::any_of(kByDegree, [&](int d) { return d != likely && shows(d); });
+}
 
 struct IntegerInside::OfObject {
   Box box = Box::empty();

@@ -6,6 +6,7 @@
 #include <bit>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include "verify/certificate/integer_witnesses.h"
 #include "verify/certificate/integers.h"
@@ -18,8 +19,8 @@ namespace {
 
 int bit_length(Wide magnitude) {
   const auto high = static_cast<std::uint64_t>(magnitude >> 64);
-  return high != 0 ? 128 - std::countl_zero(high)
-                   : 64 - std::countl_zero(static_cast<std::uint64_t>(magnitude));
+  return high != 0 ? 64 + std::bit_width(high)
+                   : std::bit_width(static_cast<std::uint64_t>(magnitude));
 }
 
 /// The triangle whose corners are three of `points`, from `first` on.
@@ -31,14 +32,36 @@ Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int
   return out;
 }
 
+using Triangle = std::array<Vec3, 3>;
+
+Vec3 direction_of(const Triangle& a, const Triangle& b, int direction) {
+  const auto edge = [](const Triangle& t, int i) -> Vec3 { return t[(i + 1) % 3] - t[i]; };
+  const auto cross = [](const Vec3& x, const Vec3& y) -> Vec3 {
+    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  };
+  if (direction < 2) {
+    const Triangle& t = direction == 0 ? a : b;
+    return cross(edge(t, 0), edge(t, 1));
+  }
+  const int family = (direction - 2) / 9;
+  const int i = (direction - 2) % 9 / 3;
+  const int j = (direction - 2) % 3;
+  const Vec3 w = b[j] - a[i];
+  if (family == 0) return cross(edge(a, i), edge(b, j));
+  if (family == 3) return w;
+  const Vec3 e = family == 1 ? edge(a, i) : edge(b, j);
+  return w * e.dot(e) - e * w.dot(e);
+}
+
 }  // namespace
 
 struct IntegerPair::Big : ScaledPair {
-  mpz_class clearance;
+  mpz_class clearance, squared_clearance;
 
   Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance)
       : ScaledPair(scaled(from_a, from_b, distance)) {
     scale(clearance, distance, exponent);
+    multiply(squared_clearance, clearance, clearance);
   }
 };
 
@@ -73,8 +96,7 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   int longest = 0;
   for (int k = 0; k < 3; ++k) {
     const Wide origin = value(0, k);
-    Wide lo = 0;
-    Wide hi = 0;
+    Wide lo = 0, hi = 0;
     for (int i = 0; i < 6; ++i) {
       relative[i][k] = value(i, k) - origin;
       lo = std::min(lo, relative[i][k]);
@@ -96,40 +118,33 @@ IntegerPair::Big& IntegerPair::big() {
   return *big_;
 }
 
-bool IntegerPair::separated_by(int direction) {
+/// Makes the direction and returns use(scratch, a, b), in integers that are long enough.
+bool IntegerPair::with_direction(int direction, double clearance, const auto& use) {
   // A clearance is mostly a decimal fraction, which makes the integers too long for Wide.
-  if (clearance_ == 0 && bits_ <= most_bits(direction)) {
+  if (clearance == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
     make_direction(s, a, b, direction);
-    return has_gap(s, a, b);
+    return use(s, a, b);
   }
   thread_local Scratch<mpz_class> s;
   const Big& pair = big();
   make_direction(s, pair.a, pair.b, direction);
-  return has_gap(s, pair.a, pair.b) && (clearance_ == 0 || gap_exceeds(s, pair.clearance));
+  return use(s, pair.a, pair.b);
+}
+
+bool IntegerPair::separated_by(int direction) {
+  return with_direction(direction, clearance_, [&](auto& s, const auto& a, const auto& b) {
+    if (!has_gap(s, a, b)) return false;
+    if constexpr (std::is_same_v<decltype(s.ee), mpz_class>)
+      return clearance_ == 0 || gap_reaches(s, big().squared_clearance, 1, false);
+    return true;
+  });
 }
 
 std::optional<int> IntegerPair::separating_direction() {
-  // Directions of low degree come first: 29 .. 37, 0 .. 10, 11 .. 28.
-  for (int n = 0; n < kDirections; ++n) {
-    const int direction = n < 9 ? 29 + n : n - 9;
-    if (separated_by(direction)) return direction;
-  }
-  return std::nullopt;
-}
-
-bool IntegerPair::only_shared_by(int direction) {
-  if (bits_ <= most_bits(direction)) {
-    const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
-    Scratch<Wide> s;
-    make_direction(s, a, b, direction);
-    return parts_at_shared(s, a, b, direction, shared_[0], shared_[1]);
-  }
-  thread_local Scratch<mpz_class> s;
-  const Big& pair = big();
-  make_direction(s, pair.a, pair.b, direction);
-  return parts_at_shared(s, pair.a, pair.b, direction, shared_[0], shared_[1]);
+  const auto found = std::ranges::find_if(kByDegree, [&](int d) { return separated_by(d); });
+  return found == kByDegree.end() ? std::nullopt : std::optional(*found);
 }
 
 bool IntegerPair::has_common_point() {
@@ -168,7 +183,11 @@ bool IntegerPair::meets_beyond_shared() {
   // The hull of the shared corners is the shared part, unless it is a triangle with an interior.
   if (all && search.is_triangle(big().a)) return true;
   for (int direction = 0; direction < 11; ++direction) {
-    if (only_shared_by(direction)) return false;
+    const bool only_shared =
+        with_direction(direction, 0, [&](auto& s, const auto& a, const auto& b) {
+          return parts_at_shared(s, a, b, direction, shared_[0], shared_[1]);
+        });
+    if (only_shared) return false;
   }
   const Big& pair = big();
   const BigCorners part = {pair.a[shared[0]], pair.a[shared[1]], pair.a[shared[2]]};
@@ -180,40 +199,13 @@ bool IntegerPair::meets_beyond_shared() {
 // Tries all 38 directions in doubles. Rounding errors do no harm, since the caller proves the
 // guess.
 
-namespace {
-
-using Triangle = std::array<Vec3, 3>;
-
-Vec3 direction_of(const Triangle& a, const Triangle& b, int direction) {
-  const auto edge = [](const Triangle& t, int i) -> Vec3 { return t[(i + 1) % 3] - t[i]; };
-  const auto cross = [](const Vec3& x, const Vec3& y) -> Vec3 {
-    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
-  };
-  if (direction < 2) {
-    const Triangle& t = direction == 0 ? a : b;
-    return cross(edge(t, 0), edge(t, 1));
-  }
-  const int family = (direction - 2) / 9;
-  const int i = (direction - 2) % 9 / 3;
-  const int j = (direction - 2) % 3;
-  const Vec3 w = b[j] - a[i];
-  if (family == 0) return cross(edge(a, i), edge(b, j));
-  if (family == 3) return w;
-  const Vec3 e = family == 1 ? edge(a, i) : edge(b, j);
-  return w * e.dot(e) - e * w.dot(e);
-}
-
-}  // namespace
-
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   constexpr double kClear = 1e-6;
   int best = 29;
   double widest = -std::numeric_limits<double>::infinity();
-  for (int n = 0; n < kDirections; ++n) {
-    const int direction = n < 9 ? 29 + n : n - 9;
+  for (const int direction : kByDegree) {
     const Vec3 d = direction_of(a, b, direction);
-    std::array<double, 3> on_a;
-    std::array<double, 3> on_b;
+    std::array<double, 3> on_a, on_b;
     for (int i = 0; i < 3; ++i) {
       on_a[i] = d.dot(a[i] - a[0]);
       on_b[i] = d.dot(b[i] - a[0]);
@@ -224,10 +216,7 @@ int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
     const double needed = clearance == 0 ? 0 : clearance * d.norm();
     const double gap = (std::max(b_lo - a_hi, a_lo - b_hi) - needed) / extent;
     if (gap > kClear) return direction;
-    if (gap > widest) {
-      widest = gap;
-      best = direction;
-    }
+    if (gap > widest) widest = gap, best = direction;
   }
   return best;
 }

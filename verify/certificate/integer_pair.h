@@ -1,6 +1,5 @@
 // Decides two triangles in integers: finds which of 38 directions separates them, or a point that
-// they share. With a clearance, finds which direction shows that they are farther apart, or two
-// points that are not farther apart.
+// they share.
 //
 // The certificate checker relies on this file, so the file uses neither CGAL nor verify/exact.
 // Every finite double is an integer times a power of two: the pair is scaled by one common power,
@@ -32,6 +31,13 @@ namespace farcull {
 ///   20 + 3i + j the same, e = edge j of b: from corner i of a to that edge's line
 ///   29 + 3i + j w, from corner i of a to corner j of b
 constexpr int kDirections = 38;
+
+/// All directions, those of the lowest degree first: 29 .. 37, 0 .. 10, 11 .. 28.
+inline constexpr std::array<int, kDirections> kByDegree = [] {
+  std::array<int, kDirections> out{};
+  for (int n = 0; n < kDirections; ++n) out[n] = n < 9 ? 29 + n : n - 9;
+  return out;
+}();
 
 /// A pair in integers. Preconditions: finite coordinates; subnormals are not flushed to zero.
 class IntegerPair {
@@ -69,7 +75,7 @@ class IntegerPair {
   struct Big;
   Big& big();
 
-  bool only_shared_by(int direction);
+  bool with_direction(int direction, double clearance, const auto& use);
 
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;

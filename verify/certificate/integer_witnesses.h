@@ -25,25 +25,18 @@ struct Scratch {
 template <class Integer>
 void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                     int direction) {
-  if (direction < 2) {
-    edge(s.e, direction == 0 ? a : b, 0);
-    edge(s.f, direction == 0 ? a : b, 1);
+  const auto product = [&](const Corners<Integer>& of_e, int e, const Corners<Integer>& of_f,
+                           int f) {
+    edge(s.e, of_e, e);
+    edge(s.f, of_f, f);
     cross(s.d, s.e, s.f);
-    return;
-  }
+  };
+  if (direction < 2) return product(direction == 0 ? a : b, 0, direction == 0 ? a : b, 1);
   const int family = (direction - 2) / 9;
   const int i = (direction - 2) % 9 / 3;
   const int j = (direction - 2) % 3;
-  if (family == 0) {
-    edge(s.e, a, i);
-    edge(s.f, b, j);
-    cross(s.d, s.e, s.f);
-    return;
-  }
-  if (family == 3) {
-    minus(s.d, b[j], a[i]);
-    return;
-  }
+  if (family == 0) return product(a, i, b, j);
+  if (family == 3) return minus(s.d, b[j], a[i]);
   minus(s.w, b[j], a[i]);
   if (family == 1) {
     edge(s.e, a, i);
@@ -58,13 +51,19 @@ void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corner
   }
 }
 
-/// True iff the projections onto s.d have a gap. False if s.d is zero.
+/// Projects the corners onto s.d.
 template <class Integer>
-bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
+void project(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
   for (int i = 0; i < 3; ++i) {
     dot(s.on_a[i], s.d, a[i]);
     dot(s.on_b[i], s.d, b[i]);
   }
+}
+
+/// True iff the projections onto s.d have a gap. False if s.d is zero.
+template <class Integer>
+bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
+  project(s, a, b);
   const auto all_less = [](const auto& x, const auto& y) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
@@ -76,37 +75,14 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// Sets `gap` to the length, times |d|, of the gap that has_gap() has found.
-template <class Integer>
-void gap_length(const Scratch<Integer>& s, Integer& gap) {
-  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
-  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
-  if (*a_hi < *b_lo) {
-    gap = *b_lo - *a_hi;
-  } else {
-    gap = *a_lo - *b_hi;
-  }
-}
-
-/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0. Then the
-/// distance is longer, too, since no gap is longer than the distance. Compares gap / |d| with the
-/// clearance, by squares.
-template <class Integer>
-bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
-  gap_length(s, s.we);
-  multiply(s.w[0], s.we, s.we);
-  dot(s.ee, s.d, s.d);
-  multiply(s.w[1], clearance, clearance);
-  multiply(s.w[2], s.w[1], s.ee);
-  return s.w[0] > s.w[2];
-}
-
 /// True iff the gap that has_gap() has found proves that the square of the distance is more than
-/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. Compares gap^2 /
-/// |d|^2.
+/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. No gap is longer
+/// than the distance. Compares gap^2 / |d|^2.
 inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
                         bool or_as_far) {
-  gap_length(s, s.we);
+  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+  s.we = *a_hi < *b_lo ? *b_lo - *a_hi : *a_lo - *b_hi;
   multiply(s.w[0], s.we, s.we);
   multiply(s.w[1], s.w[0], under);
   dot(s.ee, s.d, s.d);
@@ -123,17 +99,13 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
-  for (int i = 0; i < 3; ++i) {
-    dot(s.on_a[i], s.d, a[i]);
-    dot(s.on_b[i], s.d, b[i]);
-  }
+  project(s, a, b);
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
   const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
   const bool a_below = *a_hi <= *b_lo;
   if (!a_below && !(*b_hi <= *a_lo)) return false;
   const Integer plane = a_below ? *a_hi : *a_lo;  // a shared corner lies in it
-  unsigned in_a = 0;
-  unsigned in_b = 0;
+  unsigned in_a = 0, in_b = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.on_a[i] == plane) in_a |= 1u << i;
     if (s.on_b[i] == plane) in_b |= 1u << i;
@@ -155,15 +127,11 @@ inline int most_bits(int direction) {
   return direction < 11 ? 41 : 30;
 }
 
-// The 21 points of a pair of triangles: corners, points of edges in planes, and points of edges
-// near edges. For a clearance, 42 pairs of points, one on each triangle. Each point is a vector of
-// integers over one integer.
-
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-/// Constructs points and verifies them. Its integers are members, since GMP's integers own memory:
-/// a search that allocated them anew would spend most of its time on that.
+/// Constructs points and verifies them. A point is a vector of integers over one integer. The
+/// integers are members for the reason that Scratch gives.
 class PointSearch {
  public:
   /// These functions construct a point, and return false if it does not exist. The point lies on
@@ -339,9 +307,8 @@ class PointSearch {
   mpz_class numerator_, value_;
 };
 
-/// True iff test() holds for one of the 21 points.
-template <class Test>
-bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const Test& test) {
+/// True iff test() holds for one of the 21 points: corners, edges in planes, edges near edges.
+bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const auto& test) {
   for (int i = 0; i < 3; ++i) {
     if (search.edge_and_plane(a, i, b) && test()) return true;
     if (search.edge_and_plane(b, i, a) && test()) return true;
@@ -360,14 +327,11 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
 
 /// True iff test() holds for one of the 42 pairs of points (docs/certificate.md), one on a and one
 /// on b.
-template <class Test>
 bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
-                    const Test& test) {
+                    const auto& test) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      on_a.corner(a, i);
-      on_b.corner(b, j);
-      if (test()) return true;
+      if (on_a.corner(a, i) && on_b.corner(b, j) && test()) return true;
     }
   }
   for (int i = 0; i < 3; ++i) {

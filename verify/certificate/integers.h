@@ -96,6 +96,22 @@ inline void scale(mpz_class& to, double value, int exponent) {
   if (x.mantissa != 0) to <<= x.exponent - exponent;
 }
 
+/// The value of a double as a rational; 2^1024 replaces infinity.
+inline mpq_class rational(double x) {
+  return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
+}
+
+/// Whether x is a number rounded to the nearest double, to the even one of two. beside(next): the
+/// sign of the number minus the middle of x and `next`, a double beside x.
+template <class Beside>
+bool is_nearest_double(double x, const Beside& beside) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
+  const int below = x == -kInfinity ? 1 : beside(std::nextafter(x, -kInfinity));
+  const int above = x == kInfinity ? -1 : beside(std::nextafter(x, kInfinity));
+  return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
+}
+
 /// Two triangles in integers: a corner of the input is the first corner of a, plus 2^exponent times
 /// the integers.
 struct ScaledPair {
@@ -113,19 +129,16 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
   };
   include(length);
   for (const auto* t : {&a, &b}) {
-    for (const Vec3& p : *t) {
-      for (int k = 0; k < 3; ++k) include(p[k]);
-    }
+    for (const Vec3& p : *t) std::ranges::for_each(p, include);
   }
   ScaledPair out;
   if (least != std::numeric_limits<int>::max()) out.exponent = least;
-  const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k], out.exponent);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      scale(out.a[i][k], a[i][k], out.exponent);
+      scale(out.b[i][k], b[i][k], out.exponent);
     }
-  };
-  convert(out.a, a);
-  convert(out.b, b);
+  }
   // Directions and gaps depend only on differences of corners, and these are shorter numbers.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
@@ -137,8 +150,6 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 }  // namespace farcull::integer
 
 namespace farcull {
-
-// ---- squares of distances as fractions ----
 
 /// A fraction over / under >= 0. Not always in lowest terms.
 struct Fraction {

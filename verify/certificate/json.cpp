@@ -22,14 +22,6 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile 
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
 
-/// The text as printable ASCII of at most `most` characters, for a message.
-std::string printable(std::string_view text, std::size_t most) {
-  std::string out;
-  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
-  if (text.size() > most) out += "...";
-  return out;
-}
-
 /// Reads the syntax alone. Bounds the number of values and the depth before anything is built, so
 /// that memory stays in proportion to the text.
 class Syntax : public nlohmann::json_sax<Json> {
@@ -83,146 +75,110 @@ class Syntax : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
 };
 
-/// Functions that read values. place: the path of the value, as in unattested.views[1].width. Each
-/// function throws Error naming the file if the value is of another kind.
+/// Reads the values of an object by their keys. Throws Error naming the file and the path of the
+/// value, as in unattested.views[1].width, if a value is of another kind.
 class Reader {
  public:
-  /// name: the name of the file.
-  explicit Reader(const std::string& name) : name_(name) {}
+  /// name: of the file. place: the path of the object; empty for the whole certificate. Throws
+  /// unless the value is an object with exactly these keys.
+  Reader(const std::string& name, const Json& object, const std::string& place,
+         const std::vector<const char*>& keys)
+      : name_(name), object_(object), in_(place.empty() ? "" : place + ".") {
+    if (!object.is_object()) fail(place + " is no object");
+    for (const char* key : keys) {
+      if (!object.contains(key)) fail(in_ + key + " is missing");
+    }
+    for (const auto& item : object.items()) {
+      if (std::ranges::find(keys, item.key()) == keys.end())
+        fail("the key '" + in_ + printable(item.key(), 40) + "' is unknown");
+    }
+  }
 
   [[noreturn]] void fail(const std::string& reason) const { throw Error(name_, reason, kRemedy); }
+  const Json& operator[](const char* key) const { return object_[key]; }
 
-  /// Parses the whole text as one JSON value.
-  Json parse(std::string_view text) const {
-    if (text.find('\0') != text.npos)
-      fail("is not JSON, which has no byte 0");  // the parser would stop there
-    Syntax syntax;
-    if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);
-    return Json::parse(text.begin(), text.end());
+  Reader object(const char* key, const std::vector<const char*>& keys) const {
+    return object(object_[key], in_ + key, keys);
   }
-
-  /// Throws unless the value is an object with exactly these keys.
-  void object(const Json& value, const std::string& place,
-              const std::vector<const char*>& keys) const {
-    const std::string of = place.empty() ? "" : place + ".";
-    if (!value.is_object()) fail((place.empty() ? "the certificate" : place) + " is no object");
-    for (const char* key : keys) {
-      if (!value.contains(key)) fail(of + key + " is missing");
-    }
-    for (const auto& item : value.items()) {
-      if (std::ranges::find(keys, item.key()) == keys.end())
-        fail("the key '" + of + printable(item.key(), 40) + "' is unknown");
-    }
+  Reader object(const Json& value, const std::string& place,
+                const std::vector<const char*>& keys) const {
+    return {name_, value, place, keys};
   }
-  const Json& array(const Json& value, const std::string& place) const {
-    if (!value.is_array()) fail(place + " is no array");
-    return value;
+  /// Calls visit(value, place) for each value of an array.
+  void each(const char* key, const auto& visit) const {
+    if (!object_[key].is_array()) fail(in_ + key + " is no array");
+    std::size_t k = 0;
+    for (const Json& value : object_[key])
+      visit(value, in_ + key + "[" + std::to_string(k++) + "]");
   }
+  std::string text(const char* key) const { return text(object_[key], in_ + key); }
   std::string text(const Json& value, const std::string& place) const {
     if (!value.is_string()) fail(place + " is no string");
     return value.get<std::string>();
   }
-  std::uint64_t count(const Json& value, const std::string& place) const {
-    if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
-    return value.get<std::uint64_t>();
+  std::uint64_t count(const char* key) const {
+    if (!object_[key].is_number_unsigned())
+      fail(in_ + key + " is no whole number from 0 to 2^64 - 1");
+    return object_[key].get<std::uint64_t>();
   }
-  std::string digits(const Json& value, std::size_t size, const std::string& place) const {
-    std::string out = text(value, place);
+  std::string digits(const char* key, std::size_t size) const {
+    std::string out = text(key);
     if (out.size() != size || out.find_first_not_of("0123456789abcdef") != out.npos)
-      fail(place + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
+      fail(in_ + key + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
     return out;
   }
-  double length(const Json& value, const std::string& place) const {
-    const double x = value.is_number() ? value.get<double>() : -1;
-    if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
+  double length(const char* key) const {
+    const double x = object_[key].is_number() ? object_[key].get<double>() : -1;
+    if (!(x >= 0) || !std::isfinite(x)) fail(in_ + key + " is no finite number of 0 or more");
     return x;
   }
 
  private:
   const std::string& name_;
+  const Json& object_;
+  std::string in_;
 };
 
-Certificate::SceneKey read_scene_key(const Reader& reader, const Json& value) {
-  reader.object(value, "scene", {"name", "objects", "triangles", "hash"});
-  return {reader.text(value["name"], "scene.name"), reader.count(value["objects"], "scene.objects"),
-          reader.count(value["triangles"], "scene.triangles"),
-          reader.digits(value["hash"], 16, "scene.hash")};
-}
-
-Certificate::Unasked read_not_asked(const Reader& reader, const Json& value) {
-  reader.object(value, "not_asked", {"objects", "pairs"});
-  return {reader.count(value["objects"], "not_asked.objects"),
-          reader.count(value["pairs"], "not_asked.pairs")};
-}
-
-Certificate::Claims read_claims(const Reader& reader, const Json& value) {
-  reader.object(value, "claims",
-                {"box_pairs", "kept", "culled", "separated", "neighbours", "meeting"});
-  return {reader.count(value["box_pairs"], "claims.box_pairs"),
-          reader.count(value["kept"], "claims.kept"),
-          reader.count(value["culled"], "claims.culled"),
-          reader.count(value["separated"], "claims.separated"),
-          reader.count(value["neighbours"], "claims.neighbours"),
-          reader.count(value["meeting"], "claims.meeting")};
-}
-
-Certificate::Run read_run(const Reader& reader, const Json& value) {
-  const std::string in = "unattested.";
-  reader.object(value, "unattested",
-                {"method", "resolution", "radius_px", "offset", "views", "device", "assumptions"});
+Certificate::Run read_run(const Reader& in) {
   Certificate::Run run;
-  run.method = reader.text(value["method"], in + "method");
-  run.resolution = reader.count(value["resolution"], in + "resolution");
-  run.radius_px = reader.length(value["radius_px"], in + "radius_px");
-  run.offset = reader.text(value["offset"], in + "offset");
-  for (const Json& view : reader.array(value["views"], in + "views")) {
-    const std::string place = in + "views[" + std::to_string(run.views.size()) + "]";
-    reader.object(view, place, {"name", "width", "height", "radius_px"});
-    run.views.push_back({reader.text(view["name"], place + ".name"),
-                         reader.count(view["width"], place + ".width"),
-                         reader.count(view["height"], place + ".height"),
-                         reader.length(view["radius_px"], place + ".radius_px")});
+  run.method = in.text("method");
+  run.resolution = in.count("resolution");
+  run.radius_px = in.length("radius_px");
+  run.offset = in.text("offset");
+  in.each("views", [&](const Json& value, const std::string& place) {
+    const Reader view = in.object(value, place, {"name", "width", "height", "radius_px"});
+    run.views.push_back(
+        {view.text("name"), view.count("width"), view.count("height"), view.length("radius_px")});
+  });
+  if (!in["device"].is_null()) {
+    const Reader device = in.object("device", {"vendor", "renderer", "version", "glsl"});
+    run.device = {device.text("vendor"), device.text("renderer"), device.text("version"),
+                  device.text("glsl")};
   }
-  if (const Json& device = value["device"]; !device.is_null()) {
-    reader.object(device, in + "device", {"vendor", "renderer", "version", "glsl"});
-    run.device = {reader.text(device["vendor"], in + "device.vendor"),
-                  reader.text(device["renderer"], in + "device.renderer"),
-                  reader.text(device["version"], in + "device.version"),
-                  reader.text(device["glsl"], in + "device.glsl")};
-  }
-  for (const Json& line : reader.array(value["assumptions"], in + "assumptions")) {
-    run.assumptions.push_back(
-        reader.text(line, in + "assumptions[" + std::to_string(run.assumptions.size()) + "]"));
-  }
+  in.each("assumptions", [&](const Json& value, const std::string& place) {
+    run.assumptions.push_back(in.text(value, place));
+  });
   return run;
 }
 
 constexpr std::string_view kAxes = "xyz";
 
-Tile read_tile(const Reader& reader, const Json& value) {
-  reader.object(value, "tile", {"axis", "from", "to"});
-  const std::string axis = reader.text(value["axis"], "tile.axis");
-  if (axis.size() != 1 || kAxes.find(axis) == kAxes.npos) reader.fail("tile.axis is not x, y or z");
+Tile read_tile(const Reader& in) {
+  const std::string axis = in.text("axis");
+  if (axis.size() != 1 || kAxes.find(axis) == kAxes.npos) in.fail("tile.axis is not x, y or z");
   Tile tile{.axis = static_cast<int>(kAxes.find(axis))};
   const auto place = [&](const char* key, double& to) {
-    const Json& at = value[key];
+    const Json& at = in[key];
     if (at.is_null()) return;
     if (!at.is_number() || !std::isfinite(at.get<double>()))
-      reader.fail(std::string("tile.") + key + " is no finite number and not null");
+      in.fail(std::string("tile.") + key + " is no finite number and not null");
     to = at.get<double>();
   };
   place("from", tile.from);
   place("to", tile.to);
   // Tiles that run backwards could follow each other and cover places twice.
-  if (!(tile.from <= tile.to)) reader.fail("tile.to is less than tile.from");
+  if (!(tile.from <= tile.to)) in.fail("tile.to is less than tile.from");
   return tile;
-}
-
-Json tile_json(const Tile& tile) {
-  const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
-  return {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile.axis)])},
-          {"from", place(tile.from)},
-          {"to", place(tile.to)}};
 }
 
 double finite(double length) {
@@ -260,13 +216,15 @@ std::string to_text(const Certificate& certificate) {
                  {"triangles", scene.triangles},
                  {"hash", scene.hash}}}};
   if (version > kVersion) json["clearance"] = finite(certificate.clearance);
-  if (certificate.tile) json["tile"] = tile_json(*certificate.tile);
+  if (const std::optional<Tile>& tile = certificate.tile) {
+    const auto place = [](double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); };
+    json["tile"] = {{"axis", std::string(1, kAxes[static_cast<std::size_t>(tile->axis)])},
+                    {"from", place(tile->from)},
+                    {"to", place(tile->to)}};
+  }
   json["not_asked"] = {{"objects", certificate.not_asked.objects},
                        {"pairs", certificate.not_asked.pairs}};
-  json["claims"] = {
-      {"box_pairs", certificate.claims.box_pairs},   {"kept", certificate.claims.kept},
-      {"culled", certificate.claims.culled},         {"separated", certificate.claims.separated},
-      {"neighbours", certificate.claims.neighbours}, {"meeting", certificate.claims.meeting}};
+  for (const auto& [name, count] : kClaims) json["claims"][name] = certificate.claims.*count;
   json["list_sha256"] = certificate.list_sha256;
   json["unattested"] = {{"method", run.method},
                         {"resolution", run.resolution},
@@ -280,32 +238,43 @@ std::string to_text(const Certificate& certificate) {
 }
 
 Certificate parse_certificate(std::string_view text, const std::string& name) {
-  const Reader reader(name);
-  const Json root = reader.parse(text);
+  const auto fail = [&](const std::string& reason) { throw Error(name, reason, kRemedy); };
+  // At a byte 0 the parser would stop.
+  if (text.find('\0') != text.npos) fail("is not JSON, which has no byte 0");
+  Syntax syntax;
+  if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);
+  const Json json = Json::parse(text.begin(), text.end());
   // Format and version are checked before the keys, since another version has other keys.
-  if (!root.is_object()) reader.fail("the certificate is no object");
-  if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
-  const Json version = root.value("version", Json());
+  if (!json.is_object()) fail("the certificate is no object");
+  if (json.value("format", Json()) != kFormat) fail(std::string("format is not ") + kFormat);
+  const Json version = json.value("version", Json());
   const bool tile = version == kVersionOfTile, clearance = tile || version == kVersionWithClearance;
   if (!version.is_number_unsigned() || (version != kVersion && !clearance))
-    reader.fail("version is not 3, 4 or 5");
-  Certificate certificate;
+    fail("version is not 3, 4 or 5");
   std::vector<const char*> keys = {"format", "version",     "scene",      "not_asked",
                                    "claims", "list_sha256", "unattested", "evidence"};
   if (clearance) keys.push_back("clearance");
   if (tile) keys.push_back("tile");
-  reader.object(root, "", keys);
-  if (tile) certificate.tile = read_tile(reader, root["tile"]);
-  if (clearance) certificate.clearance = reader.length(root["clearance"], "clearance");
+  const Reader root(name, json, "", keys);
+  Certificate certificate;
+  if (tile) certificate.tile = read_tile(root.object("tile", {"axis", "from", "to"}));
+  if (clearance) certificate.clearance = root.length("clearance");
   if (clearance && !tile && certificate.clearance == 0)
-    reader.fail("clearance is 0, which version 3 is for");
-  certificate.scene = read_scene_key(reader, root["scene"]);
-  certificate.not_asked = read_not_asked(reader, root["not_asked"]);
-  certificate.claims = read_claims(reader, root["claims"]);
-  certificate.list_sha256 = reader.digits(root["list_sha256"], 64, "list_sha256");
-  certificate.run = read_run(reader, root["unattested"]);
-  auto evidence = from_base64(reader.text(root["evidence"], "evidence"));
-  if (!evidence) reader.fail("evidence is not base64 (padded, without line breaks)");
+    fail("clearance is 0, which version 3 is for");
+  const Reader scene = root.object("scene", {"name", "objects", "triangles", "hash"});
+  certificate.scene = {scene.text("name"), scene.count("objects"), scene.count("triangles"),
+                       scene.digits("hash", 16)};
+  const Reader not_asked = root.object("not_asked", {"objects", "pairs"});
+  certificate.not_asked = {not_asked.count("objects"), not_asked.count("pairs")};
+  const Reader claims =
+      root.object("claims", {"box_pairs", "kept", "culled", "separated", "neighbours", "meeting"});
+  for (const auto& [key, count] : kClaims) certificate.claims.*count = claims.count(key);
+  certificate.list_sha256 = root.digits("list_sha256", 64);
+  certificate.run =
+      read_run(root.object("unattested", {"method", "resolution", "radius_px", "offset", "views",
+                                          "device", "assumptions"}));
+  auto evidence = from_base64(root.text("evidence"));
+  if (!evidence) fail("evidence is not base64 (padded, without line breaks)");
   certificate.evidence = std::move(*evidence);
   return certificate;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <utility>
 
 #include "core/base/bytes.h"
@@ -15,88 +14,11 @@ namespace farcull {
 namespace {
 
 bool share_corner(const Scene& scene, const TrianglePair& pair) {
-  for (const Vec3& p : scene.corners(pair.a)) {
-    for (const Vec3& q : scene.corners(pair.b)) {
-      if (p == q) return true;
-    }
-  }
-  return false;
+  const std::array<Vec3, 3> a = scene.corners(pair.a), b = scene.corners(pair.b);
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-}  // namespace
-
-std::string pair_list_header(const Scene& scene) { return pair_list_header(has_self(scene)); }
-
-std::string pair_list_header(bool self) {
-  return std::string("object_a,triangle_a,object_b,triangle_b") + (self ? ",neighbours\n" : "\n");
-}
-
-PairListRows::PairListRows(const Scene& scene, const ListNumbers* numbers)
-    : scene_(scene),
-      numbers_(numbers),
-      owner_(owners(scene)),
-      self_(numbers ? numbers->self : has_self(scene)) {}
-
-void PairListRows::append(const TrianglePair& pair, std::string& text) const {
-  const std::uint32_t a = owner_[pair.a];
-  const std::uint32_t b = owner_[pair.b];
-  const auto object = [&](std::uint32_t o) -> std::uint64_t {
-    return numbers_ ? numbers_->objects[o] : o;
-  };
-  const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
-    return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
-  };
-  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
-  char* end = numbers.data();
-  for (const std::uint64_t number :
-       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
-    end = std::to_chars(end, numbers.data() + numbers.size(), number).ptr;
-    *end++ = ',';
-  }
-  text.append(numbers.data(), end);
-  if (self_) {
-    text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";
-  } else {
-    text.back() = '\n';
-  }
-}
-
-std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs) {
-  std::string out = pair_list_header(scene);
-  const PairListRows rows(scene);
-  for (const TrianglePair& pair : pairs) rows.append(pair, out);
-  return out;
-}
-
-std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
-                           const ListNumbers* numbers) {
-  Sha256 hash;
-  hash.add(pair_list_header(numbers ? numbers->self : has_self(scene)));
-  const PairListRows rows(scene, numbers);
-  std::string line;
-  for (const TrianglePair& pair : pairs) {
-    line.clear();
-    rows.append(pair, line);
-    hash.add(line);
-  }
-  return hash.digest();
-}
-
-// ---- reading ----
-
-namespace {
-
-constexpr const char* kListRemedy =
-    "give a list as `{run} {pairs} FILE` writes it: first a line "
-    "object_a,triangle_a,object_b,triangle_b, then these four numbers for each pair";
-
-/// The text as printable ASCII in quotes, cut short, for a message.
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  std::string out = "'";
-  for (const char c : text.substr(0, kMost)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (text.size() > kMost ? "...'" : "'");
-}
+std::string in_quotes(std::string_view text) { return "'" + printable(text, 40) + "'"; }
 
 /// Divides the text into lines and the lines into cells.
 class CsvReader {
@@ -106,7 +28,10 @@ class CsvReader {
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error(name_, reason, kListRemedy, static_cast<long>(line_));
+    throw Error(name_, reason,
+                "give a list as `{run} {pairs} FILE` writes it: first a line "
+                "object_a,triangle_a,object_b,triangle_b, then these four numbers for each pair",
+                static_cast<long>(line_));
   }
 
   /// The cells of the next line that is not empty; false at the end.
@@ -162,32 +87,63 @@ class CsvReader {
 constexpr std::array kNames = {"object_a",   "triangle_a", "object_b",
                                "triangle_b", "frame",      "neighbours"};
 constexpr std::size_t kNeeded = 4, kFrame = 4, kNeighboursColumn = 5;
-constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
-
-using Columns = std::array<std::size_t, kNames.size()>;
-
-Columns columns_of(const CsvReader& reader, const std::vector<std::string>& cells,
-                   std::vector<std::string>& others) {
-  Columns columns;
-  columns.fill(kNowhere);
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const auto* const known = std::find(kNames.begin(), kNames.end(), cells[c]);
-    if (known == kNames.end()) {
-      others.push_back(cells[c]);
-      continue;
-    }
-    std::size_t& column = columns[static_cast<std::size_t>(known - kNames.begin())];
-    if (column != kNowhere) reader.fail("the column " + cells[c] + " is named twice");
-    column = c;
-  }
-  for (std::size_t n = 0; n < kNeeded; ++n) {
-    if (columns[n] == kNowhere)
-      reader.fail(std::string("the first line names no column ") + kNames[n]);
-  }
-  return columns;
-}
 
 }  // namespace
+
+std::string pair_list_header(bool self) {
+  return std::string("object_a,triangle_a,object_b,triangle_b") + (self ? ",neighbours\n" : "\n");
+}
+
+PairListRows::PairListRows(const Scene& scene, const ListNumbers* numbers)
+    : scene_(scene),
+      numbers_(numbers),
+      owner_(owners(scene)),
+      self_(numbers ? numbers->self : has_self(scene)) {}
+
+void PairListRows::append(const TrianglePair& pair, std::string& text) const {
+  const std::uint32_t a = owner_[pair.a];
+  const std::uint32_t b = owner_[pair.b];
+  const auto object = [&](std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->objects[o] : o;
+  };
+  const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
+  };
+  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
+  char* end = numbers.data();
+  for (const std::uint64_t number :
+       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
+    end = std::to_chars(end, numbers.data() + numbers.size(), number).ptr;
+    *end++ = ',';
+  }
+  text.append(numbers.data(), end);
+  if (self_) {
+    text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";
+  } else {
+    text.back() = '\n';
+  }
+}
+
+std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs) {
+  std::string out = pair_list_header(has_self(scene));
+  const PairListRows rows(scene);
+  for (const TrianglePair& pair : pairs) rows.append(pair, out);
+  return out;
+}
+
+std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
+                           const ListNumbers* numbers) {
+  Sha256 hash;
+  hash.add(pair_list_header(numbers ? numbers->self : has_self(scene)));
+  const PairListRows rows(scene, numbers);
+  std::string line;
+  for (const TrianglePair& pair : pairs) {
+    line.clear();
+    rows.append(pair, line);
+    hash.add(line);
+  }
+  return hash.digest();
+}
 
 GivenList read_pair_list(std::string_view text, const std::string& name) {
   GivenList out;
@@ -195,11 +151,24 @@ GivenList read_pair_list(std::string_view text, const std::string& name) {
   CsvReader reader(text, name);
   std::vector<std::string> cells;
   if (!reader.next(cells)) reader.fail("the file is empty");
-  const Columns columns = columns_of(reader, cells, out.not_looked_at);
+  std::array<std::optional<std::size_t>, kNames.size()> columns;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto known = std::ranges::find(kNames, cells[c]);
+    if (known == kNames.end()) {
+      out.not_looked_at.push_back(cells[c]);
+      continue;
+    }
+    std::optional<std::size_t>& column = columns[static_cast<std::size_t>(known - kNames.begin())];
+    if (column) reader.fail("the column " + cells[c] + " is named twice");
+    column = c;
+  }
+  for (std::size_t n = 0; n < kNeeded; ++n) {
+    if (!columns[n]) reader.fail(std::string("the first line names no column ") + kNames[n]);
+  }
   const std::size_t width = cells.size();
-  out.has_frames = columns[kFrame] != kNowhere;
+  out.has_frames = columns[kFrame].has_value();
   const auto number = [&](std::size_t n) {
-    const std::string& cell = cells[columns[n]];
+    const std::string& cell = cells[*columns[n]];
     const std::optional<std::uint32_t> value = parse_number<std::uint32_t>(cell);
     if (!value)
       reader.fail(std::string(kNames[n]) + " is " + in_quotes(cell) + ", no whole number");
@@ -215,7 +184,7 @@ GivenList read_pair_list(std::string_view text, const std::string& name) {
     row.object = {number(0), number(2)};
     row.triangle = {number(1), number(3)};
     if (out.has_frames) row.frame = number(kFrame);
-    if (columns[kNeighboursColumn] != kNowhere) {
+    if (columns[kNeighboursColumn]) {
       const std::uint32_t neighbours = number(kNeighboursColumn);
       if (neighbours > 1) reader.fail("neighbours is neither 0 nor 1");
       row.neighbours = neighbours == 1;

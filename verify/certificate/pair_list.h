@@ -15,10 +15,8 @@
 
 namespace farcull {
 
-/// The header object_a,triangle_a,object_b,triangle_b, with a fifth column `neighbours` if an
-/// object of the scene is tested against itself. Each line ends with a single newline.
-std::string pair_list_header(const Scene& scene);
-/// The same header. self: whether an object is tested against itself.
+/// The header object_a,triangle_a,object_b,triangle_b, with a fifth column `neighbours` if `self`:
+/// if an object of the scene is tested against itself. Each line ends with a single newline.
 std::string pair_list_header(bool self);
 
 /// Numbers for lists of a scene that is a part of a whole scene: lists name objects and triangles
