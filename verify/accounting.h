@@ -39,8 +39,8 @@ struct Accounting {
   std::uint64_t pairs_total = 0;         // by combinatorics from the sizes of the objects
   std::uint64_t ignored = 0;             // of two objects in AccountOptions::ignored
   std::uint64_t pairs_kept = 0;          // in `kept`, whether or not the boxes overlap
-  std::uint64_t certified_by_boxes = 0;  // closed boxes farther than D apart along an axis, by a
-                                         // difference in double; exact for D = 0
+  std::uint64_t certified_by_boxes = 0;  // pairs whose closed boxes are more than D apart along an
+                                         // axis; the gap is rounded, but not for D = 0
   std::uint64_t neighbours = 0;          // neighbours whose intersection is only the shared part
   std::uint64_t certified_by_predicates = 0;  // farther than D apart by exact predicates
   std::uint64_t false_negatives = 0;          // pairs in no other class: missed

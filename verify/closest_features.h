@@ -52,9 +52,10 @@ template <class Integer>
 struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0
   Vector<Integer> direction;  // a positive multiple of the difference, from a's point to b's
-  Integer below;              // > 0, the denominator of the multiples
-  // Per triangle, a and b. Edge: the multiple of the edge. Face: the multiples of the edges from
-  // corner 0 to corners 1 and 2. Vertex: not used.
+  Integer below;              // > 0, the denominator of `multiples`
+  // The points in coordinates of their triangles, a and b, as numerators. Edge: t, in start + t *
+  // edge. Face: s and t, in corner 0 + s * (corner 1 - corner 0) + t * (corner 2 - corner 0).
+  // Vertex: not used.
   std::array<std::array<Integer, 2>, 2> multiples;
   bool inside = false;  // neither point lies on the boundary of its feature
 };

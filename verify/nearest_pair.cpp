@@ -83,8 +83,8 @@ class SamePoints {
   std::array<Side, 2> sides_;
 };
 
-/// Recognises pairs that are no nearer than a given pair, by the planes between its triangles.
-/// Reach and start of a triangle are computed once, for all pairs that have it.
+/// Recognises pairs that are no nearer than a given pair, by planes that separate the triangles of
+/// the given pair. How far a triangle extends along their normals is computed once.
 class NoNearer {
  public:
   NoNearer(const Scene& scene, const TrianglePair& pair)

@@ -52,17 +52,19 @@ constexpr std::size_t kMostPairsPerBlock = 1024;
 struct BlockDecision {
   BlockMeetings blocks;               // empty if nothing can meet, or if a tree decides
   Reason tree = Reason::none;         // why a tree decides; none: blocks decide
-  std::uint64_t tree_n = 0;           // the number n of that reason
+  std::uint64_t tree_n = 0;           // the number that the words of `tree` name
   std::uint64_t pairs = 0, self = 0;  // as in ObjectOverlaps
 };
 
-/// Compares the boxes of the blocks of objects that meet. The number of overlaps decides how pairs
-/// are found. By blocks along the axes if few of them overlap; along the normals of triangles too
-/// if these drop most pairs of a sample, as where large triangles lie among small ones. By oriented
-/// blocks if few of those overlap in a sample. Else by a tree; also if there are too many meetings
-/// to list, or an object is stretched beyond kUneven (core/boxes/triangle_blocks.h). Each way finds
-/// every pair at most the clearance apart. threads: 0 for as many as there are cores; changes no
-/// answer. ignored: as find_meetings().
+/// Decides how pairs are found. Each way finds every pair at most the clearance apart. The first
+/// rule that fits decides:
+/// 1. A tree, if too many objects meet to list the meetings, or if an object is stretched beyond
+///    kUneven (core/boxes/triangle_blocks.h).
+/// 2. Blocks with boxes along the axes, if few of these boxes overlap. Their triangles are compared
+///    along normals as well if that drops most pairs of a sample.
+/// 3. Blocks with oriented boxes, if few of these overlap in a sample.
+/// 4. A tree.
+/// threads: 0 for as many as there are cores; changes no answer. ignored: as find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 

@@ -48,8 +48,8 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
 /// Pairs, divided into those that drawing may remove and the others.
 struct PairsToDraw {
   std::vector<TrianglePair> drawn;  // of different owners, without a common vertex
-  std::vector<TrianglePair> other;  // all others: they share a vertex, so every view finds that
-                                    // they touch, or both have the same owner
+  // All others: pairs with one owner, and pairs with a common vertex, which no view can separate.
+  std::vector<TrianglePair> other;
 };
 /// owner: per triangle of the scene; see CullSettings::owners.
 PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,

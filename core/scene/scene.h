@@ -204,8 +204,9 @@ class MovedCorners {
   /// True if this is the frame after the given one and has the same triangles and objects, so that
   /// the functions below say what moved since.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
-  /// Whether any triangle has a corner that moved; whether this one has.
+  /// Whether any triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }
+  /// Whether triangle t has a corner that moved.
   bool triangle(std::uint32_t t) const { return any() && triangle_moved_[t] != 0; }
   /// All triangles with a corner that moved, each once.
   const std::vector<std::uint32_t>& triangles() const { return triangles_; }

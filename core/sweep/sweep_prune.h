@@ -56,8 +56,8 @@ class BoxSweep {
   std::vector<End> ends_[3];            // their ends, sorted by (value, side)
   std::vector<Box> boxes_;              // of the last call
   std::vector<TrianglePair> pairs_;     // of the last call
-  std::vector<TrianglePair> appeared_;  // during a call: pairs that are new, and
-  std::vector<TrianglePair> vanished_;  // pairs that no longer overlap; both may repeat
+  std::vector<TrianglePair> appeared_;  // in this call: pairs that began to overlap; may repeat
+  std::vector<TrianglePair> vanished_;  // in this call: pairs that ceased to overlap; may repeat
   std::uint64_t swaps_ = 0;
   bool from_scratch_ = false;
   bool is_whole_ = false;  // all members describe the same boxes

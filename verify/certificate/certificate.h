@@ -98,7 +98,7 @@ struct Certificate {
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
   /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
-  /// separates the pair, or kMeets, or kNeighbours; bit 6 (kKept): called kept; bit 7: 0.
+  /// separates the pair, or kMeets, or kNeighbours; bit 6 (kKept): the run kept the pair; bit 7: 0.
   std::vector<std::uint8_t> evidence;
 
   bool operator==(const Certificate&) const = default;
