@@ -116,7 +116,8 @@ TEST(MissModel, PredictsTheMeanOverPositionsOfTheGrid) {
 // Triangular bars at random, each an object of six triangles.
 Scene bars(int count, double width, std::uint64_t seed) {
   shapes::Random random(seed);
-  Scene out{.name = "bars"};
+  Scene out;
+  out.name = "bars";
   for (int k = 0; k < count; ++k) {
     const Vec3 along = random.direction(), middle = random.in_cube(0.5);
     const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
