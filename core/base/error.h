@@ -20,6 +20,8 @@ class Error : public std::runtime_error {
   long line;
 };
 
+// ---- names of parameters ----
+
 /// Replaces each {parameter} in the text by the program's spelling of it, or by the bare name if
 /// the program has set no spelling.
 std::string spelled(const std::string& text);
