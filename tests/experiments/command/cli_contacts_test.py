@@ -1,8 +1,6 @@
 """Kinds of contact, ignored objects and limits."""
 from cli_lab import rows
 
-# ---- bad input
-
 rows(r"""
 floor.obj << v 0 0 0; v 8 0 0; v 0 8 0; f 1 2 3
 fin.obj << v 1 1 -1; v 1 1 1; v 1 3 0; f 1 2 3
@@ -22,8 +20,6 @@ bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {al
 """, all='floor.obj fin.obj spike.obj sheet.obj', columns=['--segments', '--kinds crossing'],
      kinds=['', 'cross', 'crossing,'], limit=['0', '1.5', '99999999999999999999'],
      part=['--limit 1', '--ignore floor:fin', '--ignore-file wrong.txt'])
-
-# ---- good cases
 
 rows(r"""
 0 kinds | verify {all} --contacts --pairs kinds.csv | ^contacts   1 touch-vertex \+ 1 coplanar \+ 1 crossing$

@@ -3,8 +3,6 @@ from cli_lab import rows, write
 
 OPEN = 'v -5 -5 -5; v 29 -5 -5; v -5 29 -5; v -5 -5 29; f 1 3 2; f 1 2 4; f 2 3 4'
 
-# ---- bad input
-
 write('many.obj', ''.join(f'o o{i}\nv {i} 0 0\nv {i} 1 0\nv {i} 0 1\nf -3 -2 -1\n' for i in range(5794)))
 rows(r"""
 $ echo older >old.json
@@ -40,8 +38,6 @@ rows(r"""
 bad more pairs than are answered | within: has more than 4194304 pairs of triangles, .*; give a smaller distance, or .*, as collisions with --clearance$
   | distance random-soup --pairs all --within 100
 """, limits={'cpu': None})
-
-# ---- good cases
 
 rows(r"""
 0 two objects | {two} --verify | ^0 small +1 right +1 +0 vertex 1 +0 vertex 0

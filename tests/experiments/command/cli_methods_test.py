@@ -1,8 +1,6 @@
 """The methods and the plan."""
 from cli_lab import rows
 
-# ---- bad input
-
 rows(r"""
 $ echo older >old.json
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
@@ -25,8 +23,6 @@ bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
 bad an unknown study | nope: .*lemma | experiment nope
 """, sizes=['', '1', '32,32', '16,32', '32,'])
-
-# ---- good cases
 
 rows(r"""
 0 the default | run two-spheres -v --json default.json | ^method     boxes; promises to miss nothing$

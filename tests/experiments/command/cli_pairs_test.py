@@ -1,8 +1,6 @@
 """boxes, self-collision, clearance and frames; certificates of frames and of clearances; lists of pairs; memory."""
 from cli_lab import case, expect, launch, rows, write
 
-# ---- bad input
-
 rows(r"""
 $ echo older >old.json
 good.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
@@ -42,8 +40,6 @@ self.json << {"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj
      clearance=['-1', 'nan', ''],
      frames=['0', '1.5', '', '3:2', '1:', '1:2:3', '1000001', '99999999999999999999'],
      i=['03', '04', '05'])
-
-# ---- good cases
 
 rows(r"""
 0 boxes | run {pairs} | ^device     none needed: the method draws nothing$ | [ ]\+ 0 missed$ | ^colliding  298 pairs$
@@ -86,8 +82,7 @@ fall.json << {"objects": [{"mesh": "fall_%d.obj", "self": true}, {"mesh": "good.
   | ^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$
 """, pairs='two-spheres --method boxes')
 
-# ---- certificates of frames; check_test.cpp has those of clearances, and lists without a certificate
-
+# Certificates of frames; check_test.cpp has those of clearances, and lists without a certificate.
 rows(r"""
 $ mkdir certificates
 0 certificates of frames | run fall.json --method exact --frames 1:3 --no-verify
@@ -100,8 +95,6 @@ bad certificates of frames without frames | CERTIFICATE: .*--frames | check cert
 bad neither certificate nor list | SCENE: is missing[ ] | check two-spheres
 bad a mesh for the certificate | CERTIFICATE: .*--pairs | check good.obj folded.obj
 """)
-
-# ---- memory
 
 # Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
 for name in 'first.obj', 'second.obj':

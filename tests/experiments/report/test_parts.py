@@ -16,8 +16,6 @@ from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
 E = math.e
 
 
-# ---- numbers
-
 def test_exponents():
     x = [2.0, 8.0, 32.0, 128.0]
     fit = estimates.exponent_of(x, [3 * v * math.sqrt(v) for v in x])
@@ -70,8 +68,6 @@ def test_numbers_are_rounded_for_people(value, text):
     assert estimates.rounded(value) == text
 
 
-# ---- axes
-
 def scaled(spec, values, room=200):
     """The y axis of a plot, scaled for the values: its axes, places of values, ticks and their labels."""
     ax = draw.pyplot.figure().add_subplot()
@@ -98,8 +94,6 @@ def test_values_at_even_distances_keep_their_order(values):
     places = [ax.transData.transform((0, v))[1] for v in values]
     assert ticks == values and np.allclose(np.diff(places), places[1] - places[0]) and places[0] < places[1]
 
-
-# ---- figures
 
 def two_panels(**first):
     names = ["CULLIDE", "Quick-CULLIDE", "FAR (OBB)"]
@@ -142,8 +136,6 @@ def test_figures_are_drawn_whatever_they_hold():
     texts = [node.firstChild.data for node in xml.dom.minidom.parseString(files["svg"]).getElementsByTagName("title")]
     assert figure.title in texts and files["pdf"].startswith(b"%PDF") and files["csv"].count("\n") > 50
 
-
-# ---- tables and pages
 
 def test_text_is_no_markup():
     assert pages.html_text("<b>&\"'\n\x01") == "&lt;b&gt;&amp;&quot;&#39;\n "

@@ -12,8 +12,6 @@ def run_counts(missed=0, promises=False, **more):
             "triangles": 100, "promises": promises, **more}
 
 
-# ---- what every chapter says of gaps
-
 @pytest.mark.parametrize("study", ["headline", "offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
                                    "model", "accuracy", "error-time", "radius", "precision", "stability", "cloth"])
 def test_missing_rows_are_told(study):
@@ -23,8 +21,6 @@ def test_missing_rows_are_told(study):
     left = chapter_of(study, [row("s", "far", left_out="the device is too small")])
     assert "Left out at 1 of 1 points: the device is too small." in left.limits
 
-
-# ---- offsets
 
 def offset_rows(exact):
     return [row("s", "far", run_counts(0, True, kept_triangles=40, fragments=400), 2, resolution=64),
@@ -39,8 +35,6 @@ def test_a_smaller_offset_must_not_keep_more():
     assert findings(chapter_of("offsets", offset_rows(41))).startswith(
         "BROKEN: s, far, exact, 64 px keeps 41 triangles where boxes keep 40")
 
-
-# ---- culling
 
 def kept(candidates, neighbours=0):
     """Ten pairs collide, two of them neighbours; of the candidates so many are neighbours."""
@@ -68,8 +62,6 @@ def test_culling_tells_a_join_of_boxes_from_culling():
     assert "on easy (79 of 80) and hard (7,990 of 8,000): there it is" in join and "keeps fewer" not in join
 
 
-# ---- scenes
-
 def scene_counts(**more):
     return {"triangles": 100, "objects": 2, "self_objects": 0, "colliding": 3, "neighbours": 0, "scene_hash": "ab",
             "pixels_tenth": 1, "pixels_half": 4.0, "pixels_ninety": 9.0, **more}
@@ -87,8 +79,6 @@ def test_scenes_tell_the_size_of_triangles_at_each_resolution():
     assert table(chapter, "scenes")[1][2:4] == ["1 of 2", "40"]
 
 
-# ---- efficiency
-
 def efficiency_rows(partial):
     return [row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
                                         draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
@@ -105,8 +95,6 @@ def test_efficiency_sums_the_frames_that_all_have(partial):
     assert "CULLIDE 6 of 40" in findings(chapter) and "FAR (OBB) 0 of 40" in findings(chapter)
 
 
-# ---- scaling
-
 def test_scaling_says_what_is_missed():
     rows = [row("crowd:100", "cullide", run_counts(missed, objects=100), resolution=side)
             for side, missed in ((128, 4), (512, 1))]
@@ -114,8 +102,6 @@ def test_scaling_says_what_is_missed():
     assert "CULLIDE missed 5 of 40 (12 %, on 1 of 1 scene) colliding pairs over all sizes." in findings(chapter)
     assert "at 128 and 512 px" in chapter.figures[0].caption
 
-
-# ---- devices
 
 def device_study(*rows):
     return study_of("accuracy", [
