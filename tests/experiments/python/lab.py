@@ -1,14 +1,21 @@
 """What the tests of the module share. FARCULL_PROGRAM names the program."""
 
 import os
+import subprocess
 
 import farcull
 import numpy as np
 import pytest
 
 PROGRAM = os.environ["FARCULL_PROGRAM"]
-FOLDER = os.path.dirname(os.path.abspath(__file__))
 ALL = dict(self=True, contacts=True)
+
+
+def asked(*words):
+    """What the program prints."""
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False)
+    assert done.stdout and done.returncode in (0, 1), done.stderr
+    return done.stdout
 
 
 def error_of(call, *arguments, **options):

@@ -1,15 +1,8 @@
 """The chapters of accuracy, errors against time, the radius, precision, extreme scenes and the cloth, of rows that were
 made up: what is missed is told, and a promise that was not kept comes first."""
-
 import pytest
 
-from made_up import chapter_of, figure, findings, row, table
-
-
-def counts(missed, promises=False, **more):
-    return {"colliding": 20, "missed": missed, "missed_penetrating": missed, "colliding_triangles": 10,
-            "candidates": 40, "kept_triangles": 30, "triangles": 100, "promises": promises, "radius_px": 0.71,
-            "pixel_size": 0.5, "left_by_boxes": 80, "views_used": 3, **more}
+from made_up import chapter_of, figure, findings, row, run_counts as counts, table
 
 
 def far(scene="s", missed=0, promises=True, ms=2.0, more=(), **axes):
@@ -73,14 +66,11 @@ def test_what_decided_stands_beside_what_was_not_missed():
     assert "test that a ball is needed, not how large it has to be" in said_of_misses({"at_risk": 0, "at_risk_bare": 3})
 
 
-def accuracy_rows(first=20, last=3, far_misses=0):
-    return [row("s", "cullide --rounds 1", counts(first), resolution=64), far(missed=far_misses),
-            row("s", "cullide --rounds 1", counts(last), resolution=4096), far(resolution=4096)]
-
-
 @pytest.mark.parametrize("far_misses", [0, 1])
 def test_accuracy_shows_cullide_falling_and_far_at_zero(far_misses):
-    chapter = chapter_of("accuracy", accuracy_rows(far_misses=far_misses))
+    chapter = chapter_of("accuracy", [
+        row("s", "cullide --rounds 1", counts(20), resolution=64), far(missed=far_misses),
+        row("s", "cullide --rounds 1", counts(3), resolution=4096), far(resolution=4096)])
     said = findings(chapter)
     assert said.startswith("BROKEN: s, far, obb, 64 px misses 1 of 20") == (far_misses == 1)
     assert ("FAR (OBB) missed 0 of 40 colliding pairs in 2 runs on 1 scene in which" in said) == (far_misses == 0)

@@ -95,28 +95,14 @@ def test_values_at_even_distances_keep_their_order(values):
     assert ticks == values and np.allclose(np.diff(places), places[1] - places[0]) and places[0] < places[1]
 
 
-def two_panels(**first):
-    names = ["CULLIDE", "Quick-CULLIDE", "FAR (OBB)"]
-    return Figure("f", "t", "c", [Panel(title, series=[
-        Series(name, [1, 2], [5, 0 if name[0] == "F" else 7]) for name in names], **(first if title == "first" else {}))
-        for title in ("first", "second")])
-
-
-def lines_at_zero(figure):
-    """By name, how far each drawn line is from zero on the paper, in points, in the first panel."""
-    drawer = draw.Drawer(figure)
-    ax = drawer.canvas.axes[0]
-    return {name: {float(abs((ax.transData.transform((1, y)) - ax.transData.transform((1, 0)))[1]).round(6))
-                   for line in ax.lines if line.get_color() == look.colour
-                   for y in line.get_ydata()} for name, look in drawer.looks.items()}
-
-
 def test_zeros_are_drawn_at_zero():
-    figure = two_panels(y=log("missed", zero=True))
-    for series in figure.panels[0].series:
-        series.y = [0, 0]
-    figure.panels[0].series[0].y = [0, 0.5]
-    distances = lines_at_zero(figure)
+    shown = [Series(name, [1, 2], [0, last]) for name, last in (("CULLIDE", 0.5), ("Quick-CULLIDE", 0), ("FAR (OBB)", 0))]
+    drawer = draw.Drawer(Figure("f", "t", "c", [Panel(title, y=log("missed", zero=True), series=shown) for title in "ab"]))
+    ax = drawer.canvas.axes[0]
+    # By name, how far each drawn line is from zero on the paper, in points.
+    distances = {name: {float(abs((ax.transData.transform((1, y)) - ax.transData.transform((1, 0)))[1]).round(6))
+                        for line in ax.lines if line.get_color() == look.colour
+                        for y in line.get_ydata()} for name, look in drawer.looks.items()}
     assert distances["FAR (OBB)"] == distances["Quick-CULLIDE"] == {0}
     assert len(distances["CULLIDE"]) == 2, "the twin: what is not zero is not there"
 

@@ -2,14 +2,9 @@
 made up. Most tests have a twin, in which the opposite is said."""
 import pytest
 
-from made_up import importlib, chapter_of, findings, row, study_of, table
+from made_up import importlib, chapter_of, findings, row, run_counts, study_of, table
 from chapters import devices
 from frame import Chapter
-
-
-def run_counts(missed=0, promises=False, **more):
-    return {"colliding": 20, "missed": missed, "colliding_triangles": 10, "candidates": 40, "kept_triangles": 30,
-            "triangles": 100, "promises": promises, **more}
 
 
 @pytest.mark.parametrize("study", ["headline", "offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
@@ -79,16 +74,13 @@ def test_scenes_tell_the_size_of_triangles_at_each_resolution():
     assert table(chapter, "scenes")[1][2:4] == ["1 of 2", "40"]
 
 
-def efficiency_rows(partial):
-    return [row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
-                                        draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
-            for frame in (0, 1) for method in ("i-collide", "far", "cullide", "quick-cullide")
-            if not (partial and frame == 1 and method == "quick-cullide")]
-
-
 @pytest.mark.parametrize("partial", [True, False])
 def test_efficiency_sums_the_frames_that_all_have(partial):
-    chapter = chapter_of("efficiency", efficiency_rows(partial))
+    chapter = chapter_of("efficiency", [
+        row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
+                                    draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
+        for frame in (0, 1) for method in ("i-collide", "far", "cullide", "quick-cullide")
+        if not (partial and frame == 1 and method == "quick-cullide")])
     assert "Quick-CULLIDE asks 0.500 and draws 1 times as often" in findings(chapter)
     assert table(chapter, "efficiency-factors")[0] == ["s", "OBB", "2", "2 (2 to 2)", "1 (1 to 1)", "1 (1 to 1)"]
     assert "leaves 2 (s) to 2 (s) times fewer triangles than the objects" in findings(chapter)
