@@ -2,7 +2,6 @@
 from cli_lab import rows
 
 rows(r"""
-$ echo older >old.json
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
 bad quick-cullide with self | --self: .*s-cullide | run two-spheres --method quick-cullide --self
 each two-spheres: .*--self | | run two-spheres --method s-cullide | plan two-spheres --method s-cullide

@@ -1,5 +1,4 @@
 """What the tests of the module share. FARCULL_PROGRAM names the program."""
-
 import os
 import subprocess
 
@@ -25,6 +24,16 @@ def error_of(call, *arguments, **options):
     assert error.where and error.reason and error.remedy
     assert str(error) == f"{error.where}: {error.reason}; {error.remedy}"
     return error
+
+
+def or_skip(call, *arguments, **options):
+    """What the call returns. Where there is no OpenGL the test is skipped."""
+    try:
+        return call(*arguments, **options)
+    except farcull.InputError:
+        raise
+    except farcull.Error as error:
+        pytest.skip(f"no OpenGL here: {error}")
 
 
 def refused(call, *arguments, **options):

@@ -1,5 +1,4 @@
 """The examples of docs/example/python run, and say what their pages say. So does the README."""
-
 import contextlib
 import io
 import json

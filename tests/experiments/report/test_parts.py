@@ -42,14 +42,11 @@ def test_intervals():
 
 def held(n, cut):
     """holds_again() by counting: each way to mix the runs of two measurements, in the order of time."""
-    kept = every = 0
+    kept = []
     for firsts in itertools.combinations(range(2 * n), n):
         others = [at for at in range(2 * n) if at not in firsts]
-        below = others[-(-n // 2) - 1] < firsts[cut]
-        above = others[n // 2] > firsts[n - 1 - cut]
-        every += 1
-        kept += not (below or above)
-    return kept / every
+        kept.append(firsts[cut] < others[-(-n // 2) - 1] and others[n // 2] < firsts[n - 1 - cut])
+    return sum(kept) / len(kept)
 
 
 def test_the_interval_of_a_median_holds_what_it_says():
@@ -69,13 +66,12 @@ def test_numbers_are_rounded_for_people(value, text):
 
 
 def scaled(spec, values, room=200):
-    """The y axis of a plot, scaled for the values: its axes, places of values, ticks and their labels."""
+    """The axes of a plot whose y axis is scaled for the values, and the ticks of that axis."""
     ax = draw.pyplot.figure().add_subplot()
     draw.scale_axis(ax, "y", spec, values, room)
     ticks = list(ax.yaxis.get_majorticklocs())
     draw.pyplot.close()
-    return ax, lambda v: float(ax.yaxis.get_transform().transform([v])[0]), ticks, [
-        label.get_text() for label in ax.yaxis.get_majorticklabels()]
+    return ax, ticks
 
 
 @pytest.mark.parametrize("axis", [Axis(), log("")])
@@ -83,14 +79,14 @@ def test_an_axis_holds_every_value_of_any_size(axis):
     for exponent in range(-300, 300, 31):
         for m in (1.0, 1.9999999, 2.0, 4.2, 9.999999):
             value = m * 10.0 ** exponent
-            ax, _, ticks, _ = scaled(axis, [value, value * 3, math.nan], 60)
+            ax, ticks = scaled(axis, [value, value * 3, math.nan], 60)
             assert ax.get_ylim()[0] < ax.get_ylim()[1] and ax.get_ylim()[0] <= value <= 3 * value <= ax.get_ylim()[1]
             assert 0 < len(ticks) <= 10
 
 
 @pytest.mark.parametrize("values", [[1, 2, 1e6, 1e12], [2, 0.5, 3e-14, 0]])
 def test_values_at_even_distances_keep_their_order(values):
-    ax, _, ticks, _ = scaled(Axis(even=True), values + values)
+    ax, ticks = scaled(Axis(even=True), values + values)
     places = [ax.transData.transform((0, v))[1] for v in values]
     assert ticks == values and np.allclose(np.diff(places), places[1] - places[0]) and places[0] < places[1]
 
