@@ -12,9 +12,9 @@ from cli_lab import case, ended, expect, good, rows, start
 STUDY = 'experiment precision --quick --out'
 
 
-def query(folder, text):
-    with contextlib.closing(sqlite3.connect(f'{folder}/results.sqlite')) as base, base:
-        return base.execute(text).fetchall()
+def query(folder, text, *values, store='results.sqlite'):
+    with contextlib.closing(sqlite3.connect(f'{folder}/{store}')) as base, base:
+        return base.execute(text, values).fetchall()
 
 
 def rows_of(folder):
@@ -26,9 +26,9 @@ def measure(name, options, *checks):
     good(name, 0, [*STUDY.split(), *options.split()], checks, seconds=240, memory=None)
 
 
-def same(folder):
+def same(name, folder):
     other = rows_of(folder)
-    case(folder, other == whole, f'{[pair for pair in zip(whole, other) if pair[0] != pair[1]][:3]}, {len(other)} rows')
+    case(name, other == whole, f'{[pair for pair in zip(whole, other) if pair[0] != pair[1]][:3]}, {len(other)} rows')
 
 
 measure('whole', 'whole', '^precision +[0-9]', '^results: whole/results.sqlite$')
@@ -37,41 +37,49 @@ points = len(whole)
 case('whole', points > 20, f'only {points} points')
 
 
-def differing():
-    """How many points two devices share, and how many counts differ there."""
-    with contextlib.closing(sqlite3.connect('devices/results.sqlite')) as base:
-        base.execute("ATTACH 'devices/on-native/results.sqlite' AS other")
-        return base.execute('''SELECT count(*), sum(a.counts != b.counts) FROM results a JOIN other.results b
-            USING (study, scene, method, "offset", radius, depth_format, depth_mode, resolution, views, frame,
-            seed)''').fetchone()
+def devices():
+    """What may differ on the further device is in a store of its own. Here both are the same one."""
+    def differing():
+        with contextlib.closing(sqlite3.connect('devices/results.sqlite')) as base:
+            base.execute("ATTACH 'devices/on-native/results.sqlite' AS other")
+            return base.execute('''SELECT count(*), sum(a.counts != b.counts) FROM results a JOIN other.results b
+                USING (study, scene, method, "offset", radius, depth_format, depth_mode, resolution, views, frame,
+                seed)''').fetchone()
+    measure('devices', 'devices --devices native,native')
+    compared, other = differing()
+    case('the same device twice', compared > 0 and other == 0, f'{compared}, {other}')
+    query('devices/on-native', "UPDATE rows SET counts = '{}' WHERE position = 0")
+    case('a changed count of a device', differing() == (compared, 1), differing())
 
 
-# What may differ on the further device is in a store of its own. Here both are the same one.
-measure('devices', 'devices --devices native,native')
-compared, other = differing()
-case('the same device twice', compared > 0 and other == 0, f'{compared}, {other}')
-query('devices/on-native', "UPDATE rows SET counts = '{}' WHERE position = 0")
-case('a changed count of a device', differing() == (compared, 1), differing())
+def interrupted():
+    """Ctrl-C: says how far it is and how to go on."""
+    child = start([*STUDY.split(), 'interrupted'], memory=None)
+    for _ in range(100):
+        time.sleep(0.05)
+        if os.path.exists('interrupted/results.sqlite'):
+            time.sleep(0.3)
+            break
+    child.send_signal(signal.SIGINT)
+    case('interrupted', ended(child) == -signal.SIGINT, 'not ended by the signal')
+    expect('interrupted', f'@err ^farcull: interrupted: after [0-9]+ of {points} points; .*--resume')
+    measure('interrupted', 'interrupted --resume')
+    same('interrupted', 'interrupted')
 
-# Ctrl-C says how far it is and how to go on.
-child = start([*STUDY.split(), 'interrupted'], memory=None)
-for _ in range(100):
-    time.sleep(0.05)
-    if os.path.exists('interrupted/results.sqlite'):
-        time.sleep(0.3)
-        break
-child.send_signal(signal.SIGINT)
-case('interrupted', ended(child) == -signal.SIGINT, 'not ended by the signal')
-expect('interrupted', f'@err ^farcull: interrupted: after [0-9]+ of {points} points; .*--resume')
-measure('interrupted', 'interrupted --resume')
-same('interrupted')
 
-for shard in 3, 2, 1:
-    measure('shards', f'shards --shard {shard}/4')
-rows('bad a shard is missing | shard 4/4: of precision is missing | merge shards')
-measure('shards', 'shards --shard 4/4')
-rows('0 merge | merge shards | ^{points} rows of 1 study from 4 shards: shards/results.sqlite$', points=str(points))
-same('shards')
+def shards():
+    for shard in 3, 2, 1:
+        measure('shards', f'shards --shard {shard}/4')
+    rows('bad a shard is missing | shard 4/4: of precision is missing | merge shards')
+    measure('shards', 'shards --shard 4/4')
+    rows(r"""
+0 merge | merge shards | ^{points} rows of 1 study from 4 shards: shards/results.sqlite$
+""", points=str(points))
+    same('shards', 'shards')
+
+
+for step in devices, interrupted, shards:
+    step()
 
 rows(r"""
 # A folder that SQLite would take for something else than a folder.
