@@ -49,8 +49,6 @@ grep -q 'least miss: 0.00138 px' "$work/good/figures/paper-published.svg" || fai
 bash "$root/experiments/paper.sh" --short --out "$work/short.pdf" >/dev/null || fail "the short paper is not made"
 [[ $(pdfinfo "$work/short.pdf" | awk '/^Pages:/ { print $2 }') == 2 ]] || fail "the short paper has not two pages"
 
-# ---- papers that must not pass ----
-
 bad=$work/bad
 mkdir "$bad"
 (cd "$root" && cp -r --parents docs/reliability.md docs/budget.md docs/references.bib experiments/paper* tests/cases "$bad")

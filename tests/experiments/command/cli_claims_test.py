@@ -34,8 +34,7 @@ $ sed 's/"version": 3/"version": 2/' exact.json >older.json
 bad a certificate of another version | older\.json: version is not 3, 4 or 5 | check older.json two-spheres
 """, sha=sha, missed=missed)
 
-# ---- another program in the place of the proved checker: it proves nothing unless it says what it read, and its verdict
-
+# Another program in the place of the proved checker: it proves nothing unless it says what it read, and its verdict.
 os.mkdir('fake')
 shutil.copy(program, 'fake/farcull')
 certificate, scene = (f'echo "verified   {name} sha256 $(sha256sum <"${k}" | cut -c1-64)"'
@@ -49,8 +48,7 @@ for lines, why in (([], 'does not say that it read'), ([certificate, proved], 'd
     asked = 'fake/farcull check exact.json two-spheres --verified >said 2>why'
     rows('$ ! {asked} && grep -q "farcull-check-verified: .*{why}" why' if why else '$ {asked} && test ! -s why', asked=asked, why=why)
 
-# ---- what was not asked: two triangles of one object that pierce each other
-
+# What was not asked: two triangles of one object that pierce each other.
 rows(r"""
 pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
 good.obj << {T}; f 1 2 3
@@ -81,8 +79,6 @@ $ cp pierced.obj pierced0.obj
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
      unasked=r'^not asked +1 pair of triangles inside pierced, away \(')
-
-# ---- outputs that are inputs
 
 rows(r"""
 $ mkdir -p sub meshes results/report && : >results/report/results.sqlite

@@ -31,8 +31,6 @@ $ sed -i 's/^f 1 5 7 3$/f 3 7 5 1/' turned.obj
 """)
 write('empty.off', 'OFF\n1 0 0\n0 0 0\n')
 
-# ---- bad input
-
 rows(r"""
 bad no part | SCENE: none is named | clash
 bad one part | scene: has fewer than two objects; name two parts | clash inner.obj
@@ -67,8 +65,6 @@ bad a compressed part in a format that is not read | packed.bolt.step.gz: is a .
 bad a part as output | --csv: .*mesh | clash parts --csv inner.obj
 """, clearance=['-1', ''], word=['clear', 'clashes'], one=['--html', '--compare'], only=['a:none', 'a', ''])
 
-# ---- good cases
-
 rows(r"""
 1 a folder | clash parts | ^examined   6 of 6 pairs of parts$ | ^verdicts   1 clash, 0 contained, 0 unknown, 1 touch, 0 near, 4 clear$
   | ^clash +a +b +.* surfaces cross in 8 pairs of triangles$ | ! ^touch
@@ -98,8 +94,7 @@ bad a folder for run | parts: is a folder; name its files, as in parts/\*.stl; f
   | $ python3 -c 'import json; r = json.load(open("'"$out"'")); d = r["pairs"][0]["depth"]; assert d["least"] <= 1 <= d["most"] < 1.0001, d'
 """)
 
-# ---- tolerance: the walls meet at 0.15, but for rounding
-
+# Tolerance: the walls meet at 0.15, but for rounding.
 rows('$ mkdir walls')
 box('walls/a.obj', (-5, -.15, 0), (5, .15, 3))
 box('walls/b.obj', (-.15, 0.1499999999999999, 0), (.15, 4.15, 3))
@@ -123,8 +118,7 @@ rows(r"""
 0 a page of a tolerance | clash walls --tolerance 1e-9 --html walls.html | @walls.html "exact":"clash" | @walls.html within the tolerance
 """)
 
-# ---- a part that is flush in a slot, between whose walls no room is left to move it out. Twins fit, or are deeper.
-
+# A part that is flush in a slot, between whose walls no room is left to move it out. Twins fit, or are deeper.
 slot('slot.obj', 1, 2)
 box('flush.obj', (1 - 1e-9, 0, 1), (2 - 1e-9, 2, 2.5))
 box('rounded.obj', (1 - 1.2e-16, 0, 1), (2, 2, 2.5))
@@ -140,8 +134,7 @@ rows(r"""
 0 a tolerance beyond the slot | clash slot.obj flush.obj --tolerance 3 | touch .1 within tolerance.
 """, flush=['flush', 'rounded'], deep=['deep', 'tight'])
 
-# ---- frames: a part comes nearer, meets the wall in frame 3, and leaves it in frame 5
-
+# Frames: a part comes nearer, meets the wall in frame 3, and leaves it in frame 5.
 box('wall.obj', (0, 0, 0), (2.5, 1, 1))
 for frame, at in enumerate((4, 3, 2, 2.25, 2.5), 1):
     box(f'moves_{frame}.obj', (at, 0.25, 0.25), (at + 1, 0.75, 0.75))
@@ -164,8 +157,6 @@ $ printf '{"objects": [{"name": "still", "mesh": "wall.obj"}, {"name": "moves", 
 0 pairs that each frame has | clash only.json --frames 1:2 --only still:c | ^2 of 2 frames: clean$
 bad frames from another number | moves_0.obj: the file does not exist; .*: --frames 1:3 instead of 0:2$ | clash moves_%d.obj wall.obj --frames 3
 1 frames of a built-in scene | clash two-spheres --frames 2 | ^clash +first +second +2 +0 +1
-
-# ---- chosen pairs, an earlier table, hints, names
 
 0 only | clash parts --only c:d,a:c | ^examined   2 of 2 pairs of parts: clean$ | ^verdicts   0 clash, 0 contained, 0 unknown, 1 touch, 0 near, 1 clear$
 1 only groups | clash parts --only 'a:*' --json - | "asked": 3 | "examined": 3

@@ -46,8 +46,6 @@ case('script.bash', not lost, f'it lacks {lost}')
 lost = missing(re.sub(' --clearance(?= )', '', read('script.bash')))
 case('script.bash without an option', any('--clearance' in text for text in lost), 'it is not noticed')
 
-# ---- what it offers at the end of a line
-
 rows(r"""
 mesh.obj << {T}; f 1 2 3
 $ gzip -k mesh.obj && echo text >notes.txt && mkdir meshes

@@ -1,8 +1,6 @@
 """Kinds of contact, ignored objects and limits."""
 from cli_lab import rows
 
-# ---- bad input
-
 rows(r"""
 floor.obj << v 0 0 0; v 8 0 0; v 0 8 0; f 1 2 3
 fin.obj << v 1 1 -1; v 1 1 1; v 1 3 0; f 1 2 3
@@ -19,13 +17,7 @@ bad a name without its folder | --ignore: 'floor:fin' names 'floor', .*; did you
 wrong.txt << floor:fin; ; floor:wing
 bad a wrong line | wrong\.txt:3: 'floor:wing' names 'wing' | run {all} --ignore-file wrong.txt
 bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {all} {*part} --certificate c.json
-""", all='floor.obj fin.obj spike.obj sheet.obj', columns=['--segments', '--kinds crossing'],
-     kinds=['', 'cross', 'crossing,'], limit=['0', '1.5', '99999999999999999999'],
-     part=['--limit 1', '--ignore floor:fin', '--ignore-file wrong.txt'])
 
-# ---- good cases
-
-rows(r"""
 0 kinds | verify {all} --contacts --pairs kinds.csv | ^contacts   1 touch-vertex \+ 1 coplanar \+ 1 crossing$
   | @kinds.csv #0 ^object_a,triangle_a,object_b,triangle_b,contact$ | @kinds.csv ^0,0,1,0,crossing$
   | @kinds.csv ^0,0,2,0,touch-vertex$ | @kinds.csv ^0,0,3,0,coplanar$
@@ -74,4 +66,6 @@ folded.json << {"objects": [{"mesh": "folded.obj", "split": "groups"}]}
 
 0 a limit | verify {all} --limit 2 --pairs - --json first.json | $ cmp -s "$out" <(head -n 3 plain.csv)
   | @first.json "complete": false
-""", all='floor.obj fin.obj spike.obj sheet.obj', method=['boxes', 'exact', 'i-collide'])
+""", all='floor.obj fin.obj spike.obj sheet.obj', method=['boxes', 'exact', 'i-collide'],
+     columns=['--segments', '--kinds crossing'], kinds=['', 'cross', 'crossing,'], limit=['0', '1.5', '99999999999999999999'],
+     part=['--limit 1', '--ignore floor:fin', '--ignore-file wrong.txt'])

@@ -1,9 +1,8 @@
 """farcull distance: bad input, and what it answers."""
 from cli_lab import rows, write
 
-OPEN = 'v -5 -5 -5; v 29 -5 -5; v -5 29 -5; v -5 -5 29; f 1 3 2; f 1 2 4; f 2 3 4'
-
-# ---- bad input
+VALUES = {'open': 'v -5 -5 -5; v 29 -5 -5; v -5 29 -5; v -5 -5 29; f 1 3 2; f 1 2 4; f 2 3 4',
+          'two': 'distance small.obj right.obj', 'three': 'distance small.obj right.obj large.obj'}
 
 write('many.obj', ''.join(f'o o{i}\nv {i} 0 0\nv {i} 1 0\nv {i} 0 1\nf -3 -2 -1\n' for i in range(5794)))
 rows(r"""
@@ -33,16 +32,11 @@ bad more pairs of objects than are answered
   | scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest | distance many.json
 bad a full disk for {output} | /dev/full: cannot be written: No space left | {two} {output} /dev/full
 bad no certificate | --certificate: farcull distance has no such option | {two} --certificate c.json
-""", open=OPEN, two='distance small.obj right.obj', three='distance small.obj right.obj large.obj',
-     output=['--json', '--csv'],
-     within=['-1', 'nan', ''])
+""", **VALUES, output=['--json', '--csv'], within=['-1', 'nan', ''])
 rows(r"""
 bad more pairs than are answered | within: has more than 4194304 pairs of triangles, .*; give a smaller distance, or .*, as collisions with --clearance$
   | distance random-soup --pairs all --within 100
 """, limits={'cpu': None})
-
-# ---- good cases
-
 rows(r"""
 0 two objects | {two} --verify | ^0 small +1 right +1 +0 vertex 1 +0 vertex 0
   | ^verified: the answers are right, no nearer pair was culled, 4 pairs accounted for$
@@ -68,4 +62,4 @@ right_end.obj << v 1.7e308 0 0; v 1.6e308 0 0; v 1.7e308 1 0; f 1 2 3
 left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
 0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - | ^ +"distance": null,$
 0 frames of a built-in scene | distance two-spheres --frames 2 --inside no
-""", two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'])
+""", **VALUES, i=['2', '3', '4'])

@@ -1,10 +1,7 @@
 """The methods and the plan."""
 from cli_lab import rows
 
-# ---- bad input
-
 rows(r"""
-$ echo older >old.json
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
 bad quick-cullide with self | --self: .*s-cullide | run two-spheres --method quick-cullide --self
 each two-spheres: .*--self | | run two-spheres --method s-cullide | plan two-spheres --method s-cullide
@@ -24,11 +21,7 @@ bad plan of nothing known | nope: | plan nope
 bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
 bad an unknown study | nope: .*lemma | experiment nope
-""", sizes=['', '1', '32,32', '16,32', '32,'])
 
-# ---- good cases
-
-rows(r"""
 0 the default | run two-spheres -v --json default.json | ^method     boxes; promises to miss nothing$
   | ^default    no --method: boxes misses nothing, and is the fastest on[ ]
   | ^           others: far, cullide, quick-cullide, s-cullide, i-collide or exact$
@@ -59,4 +52,4 @@ rows(r"""
   --device native | ^cullide --rounds 1[ ]
 0 compare the family | compare two-spheres --methods cullide,quick-cullide,i-collide,exact --resolutions 64
   --device software | ^i-collide +-[ ]
-""", small='--resolution 64 --device software')
+""", small='--resolution 64 --device software', sizes=['', '1', '32,32', '16,32', '32,'])

@@ -1,8 +1,6 @@
 """boxes, self-collision, clearance and frames; certificates of frames and of clearances; lists of pairs; memory."""
 from cli_lab import case, expect, launch, rows, write
 
-# ---- bad input
-
 rows(r"""
 $ echo older >old.json
 good.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
@@ -38,14 +36,7 @@ cloth_05.obj << {T}; f 1 2 3
 cloth_05.obj << v 0 0 nan; v 1 0 0; v 0 1 0; v 0 0 1; f 1 2 3; f 1 2 4
 bad a first frame that is no mesh | cloth_05\.obj:1: | run {cloth} --frames 5:5 --json old.json --pairs new.csv
 self.json << {"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj"}]}
-""", pairs='two-spheres --method boxes', cloth='cloth_%02d.obj --method boxes',
-     clearance=['-1', 'nan', ''],
-     frames=['0', '1.5', '', '3:2', '1:', '1:2:3', '1000001', '99999999999999999999'],
-     i=['03', '04', '05'])
 
-# ---- good cases
-
-rows(r"""
 0 boxes | run {pairs} | ^device     none needed: the method draws nothing$ | [ ]\+ 0 missed$ | ^colliding  298 pairs$
   | ^method     boxes; promises to miss nothing$
 0 a clearance of 0 | run {pairs} --clearance 0 --pairs - >plain.csv
@@ -84,11 +75,8 @@ fall.json << {"objects": [{"mesh": "fall_%d.obj", "self": true}, {"mesh": "good.
   | ^frame +candidates +colliding +\+ neighbours +cull ms | ^per frame  median[ ]
 0 frames of a built-in scene | verify two-spheres@far@ground --method boxes --frames 3
   | ^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$
-""", pairs='two-spheres --method boxes')
 
-# ---- certificates of frames; check_test.cpp has those of clearances, and lists without a certificate
-
-rows(r"""
+# Certificates of frames. check_test.cpp has those of clearances, and lists without a certificate.
 $ mkdir certificates
 0 certificates of frames | run fall.json --method exact --frames 1:3 --no-verify
   --certificate certificates/c_%02d.json --pairs falls.csv
@@ -99,9 +87,8 @@ $ mkdir certificates
 bad certificates of frames without frames | CERTIFICATE: .*--frames | check certificates/c_%02d.json fall.json
 bad neither certificate nor list | SCENE: is missing[ ] | check two-spheres
 bad a mesh for the certificate | CERTIFICATE: .*--pairs | check good.obj folded.obj
-""")
-
-# ---- memory
+""", pairs='two-spheres --method boxes', cloth='cloth_%02d.obj --method boxes', clearance=['-1', 'nan', ''],
+     frames=['0', '1.5', '', '3:2', '1:', '1:2:3', '1000001', '99999999999999999999'], i=['03', '04', '05'])
 
 # Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
 for name in 'first.obj', 'second.obj':
@@ -110,22 +97,17 @@ rows("""
 0 coincident triangles | run first.obj second.obj --no-verify | ^colliding  1,440,000 pairs$
 """, limits={'memory': 400_000})
 
-
-def memory_is_named():
-    """Where memory is the cause, the message says so. A limit too small for the libraries that the program is linked
-    with is theirs to report: the loader's (status 127), or that of a library which takes memory before main(), as
-    octomap under FCL does. Then not even --version works. And a driver may crash under it (docs/reliability.md)."""
-    least_started = 0
-    for limit in 75_000, 80_000, 100_000, 150_000, 200_000, 300_000, 350_000, 400_000:
-        if launch(['--version'], memory=limit) != 0:
-            continue
-        least_started = least_started or limit
-        for method in 'boxes', 'far', 'exact':
-            name = f'{method} in {limit} KiB'
-            status = launch(['run', 'two-spheres', '--method', *method.split()], memory=limit)
-            if case(name, status in (0, 2, 127), f'status {status}') and status == 2:
-                expect(name, '@err ^farcull: .*memory.*; .*memory')
-    case('limits on memory', 0 < least_started <= 150_000, f'the program starts with {least_started} KiB (0: never)')
-
-
-memory_is_named()
+# Where memory is the cause, the message says so. A limit too small for the libraries that the program is linked with is
+# theirs to report: the loader's (status 127), or that of a library which takes memory before main(), as octomap under FCL
+# does. Then not even --version works. And a driver may crash under it (docs/reliability.md).
+least_started = 0
+for limit in 75_000, 80_000, 100_000, 150_000, 200_000, 300_000, 350_000, 400_000:
+    if launch(['--version'], memory=limit) != 0:
+        continue
+    least_started = least_started or limit
+    for method in 'boxes', 'far', 'exact':
+        name = f'{method} in {limit} KiB'
+        status = launch(['run', 'two-spheres', '--method', method], memory=limit)
+        if case(name, status in (0, 2, 127), f'status {status}') and status == 2:
+            expect(name, '@err ^farcull: .*memory.*; .*memory')
+case('limits on memory', 0 < least_started <= 150_000, f'the program starts with {least_started} KiB (0: never)')

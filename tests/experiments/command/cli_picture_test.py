@@ -4,8 +4,6 @@ import subprocess
 
 from cli_lab import program, rows
 
-# ---- bad input
-
 rows(r"""
 $ echo older >old.png && mkdir folder
 crossing.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 5 6 7
@@ -36,8 +34,6 @@ if os.getuid() != 0:
 $ mkdir locked && chmod a-w locked
 bad a folder without permission | locked/new.png: | picture two-spheres -o locked/new.png
 """)
-
-# ---- what it says and writes
 
 rows(r"""
 $ printf '\x89PNG\r\n\x1a\n' >signature

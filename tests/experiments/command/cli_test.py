@@ -11,8 +11,6 @@ VALUES = {'spheres': 'two-spheres --device software --resolution 64 --method far
           'cullide': 'two-spheres --device software --resolution 64 --method cullide',
           'judge': ['run', 'verify', 'compare']}
 
-# ---- bad arguments
-
 name, wide, deep = 'n' * 255, 'ä' * 127, './' * 2045
 rows(r"""
 $ mkdir folder && echo older >old.json
@@ -71,8 +69,6 @@ for long in name, wide:
     rows('0 a long name | run {spheres} --json {long} --pairs {pair} | @{long} "colliding_pairs" | $ rm {long} {pair}',
          **VALUES, long=long, pair='p' + long[1:])
 
-# ---- outputs
-
 rows(r"""
 each missing/new: cannot be written | run {spheres} | --json missing/new | --pairs missing/new
 each good\.obj/new: cannot be written | run {spheres} | --json good.obj/new | --pairs good.obj/new
@@ -103,8 +99,6 @@ bad a file that grows too large | old\.json: cannot be written: File too large |
 bad a mesh that grows too large | new/first\.off: cannot be written: File too large | scenes far-apart --write new
 """, limits={'file_size': 1024}, **VALUES)
 
-# ---- devices
-
 rows(r"""
 $ mkdir no_vendors broken_egl && echo 'not a library' >broken_egl/libEGL.so.1
 bad {gl0} without an EGL vendor | EGL: | __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent {*gl}
@@ -129,8 +123,6 @@ bad {software0} with OpenGL 3.3 | EGL: .*older than 4\.3
          'verify two-spheres --method far --device gl --json old.json', 'compare two-spheres --device gl --json old.json'],
      software=['run two-spheres --method far --json old.json', 'verify two-spheres --method far --json old.json',
                'compare two-spheres --json old.json', 'doctor'])
-
-# ---- interrupts
 
 
 def interrupted():
@@ -213,8 +205,6 @@ interrupted()
 interrupted_says()
 interrupted_frames()
 interrupted_file()
-
-# ---- what the answers say
 
 rows(r"""
 0 {command} --help | {*command} --help | ^Examples:$ | ^  farcull {command}

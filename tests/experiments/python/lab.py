@@ -1,14 +1,20 @@
 """What the tests of the module share. FARCULL_PROGRAM names the program."""
-
 import os
+import subprocess
 
 import farcull
 import numpy as np
 import pytest
 
 PROGRAM = os.environ["FARCULL_PROGRAM"]
-FOLDER = os.path.dirname(os.path.abspath(__file__))
 ALL = dict(self=True, contacts=True)
+
+
+def asked(*words):
+    """What the program prints."""
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False)
+    assert done.stdout and done.returncode in (0, 1), done.stderr
+    return done.stdout
 
 
 def error_of(call, *arguments, **options):
@@ -18,6 +24,16 @@ def error_of(call, *arguments, **options):
     assert error.where and error.reason and error.remedy
     assert str(error) == f"{error.where}: {error.reason}; {error.remedy}"
     return error
+
+
+def or_skip(call, *arguments, **options):
+    """What the call returns. Where there is no OpenGL the test is skipped."""
+    try:
+        return call(*arguments, **options)
+    except farcull.InputError:
+        raise
+    except farcull.Error as error:
+        pytest.skip(f"no OpenGL here: {error}")
 
 
 def refused(call, *arguments, **options):

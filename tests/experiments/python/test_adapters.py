@@ -13,8 +13,7 @@ import broad_phase
 from broad_phase import BroadPhase
 from collision_manager import CollisionManager
 
-# ---- the collision manager: corners and poses are whole numbers, so that placing them is exact
-
+# The collision manager: corners and poses are whole numbers, so that placing them is exact.
 TURNS = [np.array(p) for p in ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])]
 
 
@@ -97,9 +96,6 @@ def test_the_manager_answers_as_brute_force():
                 super().set_transform(name, transform)
 
     assert differences(Stale, 1)[0] > 0
-
-
-# ---- the broad phase
 
 
 def swept(V0, V1, radius):

@@ -30,9 +30,6 @@ def scene(tmp_path_factory):
     return V, F, Program(tmp_path_factory.mktemp("apart"), V, F)
 
 
-# ---- distances
-
-
 def as_objects(found):
     """The columns as the objects of before, one row after the other."""
     return [
@@ -151,9 +148,6 @@ def test_objects_that_are_ignored_have_no_distance(scene):
     assert refused(farcull.DistanceFinder(ignore=[(0, 2)]).find, V, F, labels=labels) == "labels"
 
 
-# ---- poses
-
-
 def moved(V, F, starts, poses):
     """The vertices after each object was moved, by the operations that the documentation states."""
     out = V.copy()
@@ -193,9 +187,6 @@ def test_poses_move_objects_frame_after_frame():
         other[:, :3, :3] = poses[:, :3, :3].transpose(0, 2, 1)
         assert list(farcull.distances(V, F, starts, poses=other)) != list(farcull.distances(V, F, starts, poses=poses))
     assert len(sizes) > 3
-
-
-# ---- contacts
 
 
 def test_segments_are_those_of_the_program(scene):
@@ -246,9 +237,6 @@ def test_the_table_of_pairs(monkeypatch):
     assert named.neighbours.any() and not named.neighbours.all()
     assert np.array_equal(named[["object_a", "object_b"]].to_numpy(), labels[named[["a", "b"]].to_numpy()])
     assert list(farcull.collide(V, F, self=True).to_pandas().columns) == ["a", "b", "neighbours"]  # the twin: no objects
-
-
-# ---- clashes and pages
 
 
 def without_times(record):
@@ -309,9 +297,6 @@ def test_answers_are_shown_in_the_browser(tmp_path, monkeypatch):
     for unusual in (scene.run(limit=3, verify=False), scene.run(clearance=1e-6, verify=False), farcull.collide(V, F, [0, 7], clearance=1e-6),
                     farcull.Collider().find(V, F, [0, 7]), pickle.loads(pickle.dumps(result)), 3, None):
         assert refused(farcull.show, unusual, page) == "what"
-
-
-# ---- what people hold
 
 
 class Held:

@@ -1,13 +1,11 @@
 """Kinds of contact and ignored objects, against the program's own answers."""
-
 import csv
 import json
-import subprocess
 
 import farcull
 import numpy as np
 import pytest
-from lab import ALL, PROGRAM, refused
+from lab import ALL, asked, refused
 
 OBJECTS = [0, 40, 80, 120]
 
@@ -29,14 +27,12 @@ class Program:
         for o, first in enumerate(OBJECTS):
             faces = "".join(f"3 {a} {b} {c}\n" for a, b, c in F[first : first + 40].tolist())
             (folder / f"o{o}.off").write_text(f"OFF\n{len(V)} 40 0\n{points}{faces}")
+        self.files = sorted(folder.glob("*.off"))
 
     def rows(self, *words):
         """(a, b, whether neighbours, kind) of each pair in the program's order; and its record."""
         pairs = self.folder / "pairs.csv"
-        out = subprocess.run(
-            [PROGRAM, "run", *sorted(self.folder.glob("*.off")), "--self", "--contacts"]
-            + ["--pairs", pairs, "--json", "-", "--no-verify", *words],
-            capture_output=True, text=True, check=True).stdout
+        out = asked("run", *self.files, "--self", "--contacts", "--pairs", pairs, "--json", "-", "--no-verify", *words)
         rows = []
         for row in csv.DictReader(pairs.read_text().splitlines()):
             a, b = (OBJECTS[int(row[f"object_{x}"])] + int(row[f"triangle_{x}"]) for x in "ab")
@@ -96,8 +92,7 @@ def test_ignored_objects_are_those_of_the_program(scene):
 
 def test_runs_of_scenes_answer_the_same(scene):
     V, F, program = scene
-    files = sorted(program.folder.glob("*.off"))
-    read = farcull.Scene(*files, self=True)
+    read = farcull.Scene(*program.files, self=True)
     starts = read.object_starts.tolist()
     assert starts == OBJECTS and read.names == ["o0", "o1", "o2", "o3"]
     for method in ("boxes", "exact"):

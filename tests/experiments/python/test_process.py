@@ -1,6 +1,5 @@
 """The module within its process: Ctrl-C, threads, fork, memory, interpreters. Each test runs a fresh
 Python, so that what it breaks stays there."""
-
 import os
 import signal
 import subprocess

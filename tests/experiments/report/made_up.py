@@ -33,6 +33,13 @@ def row(scene, method, counts=(), ms=2.0, left_out="", runs=None, void=(), **axe
     return {**point, **axes}, {k: v for k, v in dict(counts).items() if v is not None}, times, left_out
 
 
+def run_counts(missed=0, promises=False, **more):
+    """Counts of a run on a scene of 20 colliding pairs."""
+    return {"colliding": 20, "missed": missed, "missed_penetrating": missed, "colliding_triangles": 10,
+            "candidates": 40, "kept_triangles": 30, "triangles": 100, "promises": promises, "radius_px": 0.71,
+            "pixel_size": 0.5, "left_by_boxes": 80, "views_used": 3, **more}
+
+
 def study_of(name, rows, declared=0):
     """The Study of these rows; `declared`: how many points its grid has, if more than there are rows."""
     with tempfile.TemporaryDirectory() as folder:

@@ -11,8 +11,6 @@ from made_up import chapter_of, figure, findings, row, table
 libraries_chapter = importlib.import_module("chapters.libraries")
 
 
-# ---- proximity
-
 def sets(missed=0, each=4, promises=True, missed_pairs=0, objects=50):
     """Of 50 objects that have a nearest neighbour; `each` triangles in the set of an object."""
     return {"with_nearest": 50, "missed": missed, "nearest_pairs": 60, "missed_pairs": missed_pairs,
@@ -66,8 +64,6 @@ def test_proximity_begins_with_the_promise_that_was_not_kept(broken, said):
     text = findings(chapter_of("proximity", proximity_rows(*broken)))
     assert text.startswith(said) and " lost 0 of " not in text and "farcull 0 of " not in text
 
-
-# ---- libraries
 
 def counts_of(family, kind, card, counts, parameter="0"):
     """Counts of one part."""

@@ -1,15 +1,8 @@
 """The chapters of accuracy, errors against time, the radius, precision, extreme scenes and the cloth, of rows that were
 made up: what is missed is told, and a promise that was not kept comes first."""
-
 import pytest
 
-from made_up import chapter_of, figure, findings, row, table
-
-
-def counts(missed, promises=False, **more):
-    return {"colliding": 20, "missed": missed, "missed_penetrating": missed, "colliding_triangles": 10,
-            "candidates": 40, "kept_triangles": 30, "triangles": 100, "promises": promises, "radius_px": 0.71,
-            "pixel_size": 0.5, "left_by_boxes": 80, "views_used": 3, **more}
+from made_up import chapter_of, figure, findings, row, run_counts as counts, table
 
 
 def far(scene="s", missed=0, promises=True, ms=2.0, more=(), **axes):
@@ -29,8 +22,6 @@ def series(chapter, figure_name, name, panel=0):
     found = figure(chapter, figure_name)
     return next((s for s in found.panels[panel].series + found.panels[panel].strip if s.name == name), None)
 
-
-# ---- every chapter
 
 PROMISING = {"accuracy": far(), "error-time": far(), "radius": far("degenerate"), "precision": lemma(
     more={"promises": True}, depth_format="float32", resolution=508), "stability": far("contacts:slivers:24:1e2"),
@@ -75,16 +66,11 @@ def test_what_decided_stands_beside_what_was_not_missed():
     assert "test that a ball is needed, not how large it has to be" in said_of_misses({"at_risk": 0, "at_risk_bare": 3})
 
 
-# ---- accuracy
-
-def accuracy_rows(first=20, last=3, far_misses=0):
-    return [row("s", "cullide --rounds 1", counts(first), resolution=64), far(missed=far_misses),
-            row("s", "cullide --rounds 1", counts(last), resolution=4096), far(resolution=4096)]
-
-
 @pytest.mark.parametrize("far_misses", [0, 1])
 def test_accuracy_shows_cullide_falling_and_far_at_zero(far_misses):
-    chapter = chapter_of("accuracy", accuracy_rows(far_misses=far_misses))
+    chapter = chapter_of("accuracy", [
+        row("s", "cullide --rounds 1", counts(20), resolution=64), far(missed=far_misses),
+        row("s", "cullide --rounds 1", counts(3), resolution=4096), far(resolution=4096)])
     said = findings(chapter)
     assert said.startswith("BROKEN: s, far, obb, 64 px misses 1 of 20") == (far_misses == 1)
     assert ("FAR (OBB) missed 0 of 40 colliding pairs in 2 runs on 1 scene in which" in said) == (far_misses == 0)
@@ -105,8 +91,6 @@ def test_accuracy_says_what_drawing_takes_away_beyond_boxes():
     # The twin: where boxes alone were not measured, nothing is said of them.
     assert "alone" not in findings(chapter_of("accuracy", [*rows, far_row]))
 
-
-# ---- errors against time
 
 def timed_rows(exact_ms=9, runs=(None, None), left_out=""):
     return [row("s", "fcl-float", counts(2, wrong=3), 1, left_out), row("s", "boxes", counts(0, True), 4,
@@ -152,8 +136,6 @@ def test_void_rounds_are_left_out_and_counted():
     assert [series(of, "error-time", "Boxes").x_high[0] for of in (clean, loud)] == [6, 99]
 
 
-# ---- headline
-
 def headline_rows(lost=0, void=()):
     ways = [row("s", "cullide --rounds 1", counts(8), resolution=64, runs=[2] * 3, void=void),
             row("s", "cullide --rounds 1 --clear all --conservative", counts(1), resolution=64, runs=[3] * 3, void=void),
@@ -172,8 +154,6 @@ def test_headline_says_what_was_measured():
         chapter_of("headline", headline_rows(2)))
     assert "measured again" in chapter_of("headline", headline_rows(void=(0, 1, 2))).figures[0].caption
 
-
-# ---- radius
 
 def radius_rows(at_budget=0):
     return [lemma(60, radius="0.5", at=0.355), lemma(at_budget), lemma(radius="1.1", at=0.781),
@@ -211,8 +191,6 @@ def test_radius_shouts_a_violation_at_the_budget(rows, said):
     assert found.startswith("BROKEN: " + said) and "beyond, fragment depth" not in found
 
 
-# ---- precision
-
 def precise(*args, form="float32", **more):
     return lemma(*args, generator="almost flat", depth_format=form, resolution=508, **more)
 
@@ -229,8 +207,6 @@ def test_precision_tells_rounding_from_violations(at_budget):
     assert cells["fixed-function, published radius", "32-bit float"] == ["100", "10", "20", "0", "7,250", "7.25"]
     assert [m.at for p in figure(chapter, "precision").panels for m in p.marks] == [3.5, 1.5]
 
-
-# ---- extreme scenes
 
 def cells(value, method="cullide", lost=0, varying=10, family="overlap", **more):
     return row(f"contacts:{family}:24:{value}", method, {
@@ -251,8 +227,6 @@ def test_stability_draws_the_share_of_contacts_that_vary_from_the_harmless_value
             "strict from 0 on, up to 30 %.") in findings(chapter)
     assert "slivers, aspect" not in findings(chapter), "the twin: none is missed"
 
-
-# ---- cloth
 
 def cloth_rows(last, far_colliding=5):
     def frame(scene, method, number, total, **more):

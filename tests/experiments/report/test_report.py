@@ -83,8 +83,6 @@ def one(tmp_path_factory):
     return folder
 
 
-# ---- figures
-
 def overlapping(figure):
     """What is wrong with the texts of a figure: pairs that overlap, those that leave it, those below 8 pt."""
     canvas = draw.Drawer(figure).canvas
@@ -151,8 +149,6 @@ def test_the_first_page_and_the_length_of_the_report(whole):
     assert sum(of.startswith(campaigns) for of in chapters) == 4 and len(text.split()) > 7000, "the twin: with them it is longer"
 
 
-# ---- promises and gaps
-
 def test_an_incomplete_store_is_told(tmp_path):
     folder = made(tmp_path / "r", "some")
     done = report(folder, FARCULL_PYTHON=patched(tmp_path, NOTHING_DRAWN))
@@ -173,8 +169,6 @@ def test_a_broken_promise_is_the_first_that_is_said(tmp_path, whole, part, studi
     assert all("BROKEN:" in text.split("All of this page")[0] for text in (page, first))
     assert "BROKEN:" not in (whole / "index.html").read_text(), "the twin"
 
-
-# ---- refusals and interruptions
 
 @pytest.mark.parametrize("part, said", [("shard", "farcull merge"), ("foreign", "unheard-of"), (None, "no folder of results"),
                                         ("empty", "no results.sqlite")])
@@ -237,8 +231,6 @@ def test_reports_that_are_ended(one, tmp_path):
     process.wait()
     assert report(one).returncode == 0 and not list(one.glob(".report-*"))
 
-
-# ---- LaTeX
 
 TABLES = r"""\documentclass[a4paper]{article}
 \usepackage{booktabs,graphicx}\usepackage[margin=25mm]{geometry}\setcounter{totalnumber}{18}

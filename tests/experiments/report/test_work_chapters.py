@@ -2,17 +2,10 @@
 made up. Most tests have a twin, in which the opposite is said."""
 import pytest
 
-from made_up import importlib, chapter_of, findings, row, study_of, table
+from made_up import importlib, chapter_of, findings, row, run_counts, study_of, table
 from chapters import devices
 from frame import Chapter
 
-
-def run_counts(missed=0, promises=False, **more):
-    return {"colliding": 20, "missed": missed, "colliding_triangles": 10, "candidates": 40, "kept_triangles": 30,
-            "triangles": 100, "promises": promises, **more}
-
-
-# ---- what every chapter says of gaps
 
 @pytest.mark.parametrize("study", ["headline", "offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries",
                                    "model", "accuracy", "error-time", "radius", "precision", "stability", "cloth"])
@@ -23,8 +16,6 @@ def test_missing_rows_are_told(study):
     left = chapter_of(study, [row("s", "far", left_out="the device is too small")])
     assert "Left out at 1 of 1 points: the device is too small." in left.limits
 
-
-# ---- offsets
 
 def offset_rows(exact):
     return [row("s", "far", run_counts(0, True, kept_triangles=40, fragments=400), 2, resolution=64),
@@ -39,8 +30,6 @@ def test_a_smaller_offset_must_not_keep_more():
     assert findings(chapter_of("offsets", offset_rows(41))).startswith(
         "BROKEN: s, far, exact, 64 px keeps 41 triangles where boxes keep 40")
 
-
-# ---- culling
 
 def kept(candidates, neighbours=0):
     """Ten pairs collide, two of them neighbours; of the candidates so many are neighbours."""
@@ -68,8 +57,6 @@ def test_culling_tells_a_join_of_boxes_from_culling():
     assert "on easy (79 of 80) and hard (7,990 of 8,000): there it is" in join and "keeps fewer" not in join
 
 
-# ---- scenes
-
 def scene_counts(**more):
     return {"triangles": 100, "objects": 2, "self_objects": 0, "colliding": 3, "neighbours": 0, "scene_hash": "ab",
             "pixels_tenth": 1, "pixels_half": 4.0, "pixels_ninety": 9.0, **more}
@@ -87,25 +74,18 @@ def test_scenes_tell_the_size_of_triangles_at_each_resolution():
     assert table(chapter, "scenes")[1][2:4] == ["1 of 2", "40"]
 
 
-# ---- efficiency
-
-def efficiency_rows(partial):
-    return [row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
-                                        draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
-            for frame in (0, 1) for method in ("i-collide", "far", "cullide", "quick-cullide")
-            if not (partial and frame == 1 and method == "quick-cullide")]
-
-
 @pytest.mark.parametrize("partial", [True, False])
 def test_efficiency_sums_the_frames_that_all_have(partial):
-    chapter = chapter_of("efficiency", efficiency_rows(partial))
+    chapter = chapter_of("efficiency", [
+        row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
+                                    draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
+        for frame in (0, 1) for method in ("i-collide", "far", "cullide", "quick-cullide")
+        if not (partial and frame == 1 and method == "quick-cullide")])
     assert "Quick-CULLIDE asks 0.500 and draws 1 times as often" in findings(chapter)
     assert table(chapter, "efficiency-factors")[0] == ["s", "OBB", "2", "2 (2 to 2)", "1 (1 to 1)", "1 (1 to 1)"]
     assert "leaves 2 (s) to 2 (s) times fewer triangles than the objects" in findings(chapter)
     assert "CULLIDE 6 of 40" in findings(chapter) and "FAR (OBB) 0 of 40" in findings(chapter)
 
-
-# ---- scaling
 
 def test_scaling_says_what_is_missed():
     rows = [row("crowd:100", "cullide", run_counts(missed, objects=100), resolution=side)
@@ -114,8 +94,6 @@ def test_scaling_says_what_is_missed():
     assert "CULLIDE missed 5 of 40 (12 %, on 1 of 1 scene) colliding pairs over all sizes." in findings(chapter)
     assert "at 128 and 512 px" in chapter.figures[0].caption
 
-
-# ---- devices
 
 def device_study(*rows):
     return study_of("accuracy", [
