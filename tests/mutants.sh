@@ -18,11 +18,10 @@
 # compile, or one whose survival is explained was noticed; 2 the campaign could not run.
 #
 # The list is tests/mutants/*.txt. A block is
-#   === NAME
+#   === NAME: what changes, in a sentence
 #   file: the file that changes; a block without this line has that of the block before
 #   tests: a filter of googletest; each pattern of it begins with the name of a suite; without this
 #     line it is that of the block before
-#   change: what changes, in a sentence
 #   program: the program of the tests, where it is not farcull_mutant_tests
 #   explained: why no test can notice it, if none can
 #   -a line of a text that stands in the file once
@@ -364,7 +363,7 @@ self_test() {
   refused "another folder" 's/^file: .*/file: experiments\/command\/main.cpp/' 'is not in core'
   refused "no such test" 's/Budget\.\*/Budget.Nowhere/' 'no test is called Budget.Nowhere'
   refused "no tests" 's/^tests: .*//' 'names no tests'
-  refused "no sentence" 's/^change: .*/change: nothing/' 'is no sentence'
+  refused "no sentence" 's/^(=== [a-z-]+): .*/\1: nothing/' 'is no sentence'
   refused "no change" 's/, as before$//' 'it changes nothing'
   refused "two of a name" 's/^# (.*)$/=== control-comment/' 'a second block of this name'
   refused "a line in no block" 's/^# /lost /' 'stands in no block'
