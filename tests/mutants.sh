@@ -74,8 +74,7 @@ blocks() { awk -f tests/mutants/blocks.awk -v mode="$1" -v name="${2-}" "${lists
 # Is this mutant among those that were asked for?
 wanted() {
   local pattern
-  ((${#patterns[@]})) || return 0
-  for pattern in "${patterns[@]}"; do
+  for pattern in "${patterns[@]-*}"; do
     # shellcheck disable=SC2053  # it is a pattern
     [[ $1 == $pattern ]] && return 0
   done
@@ -125,8 +124,6 @@ check() {
   echo "mutants: $(blocks list | wc -l) blocks fit the sources"
 }
 
-# ---- what was measured ----
-
 # What the result of a mutant rests on: its block, its file, and the files that hold its tests.
 key_of() { # name file tests
   local suites
@@ -164,8 +161,6 @@ write_table() {
     "$out/verdicts.tsv" >"$out/page.md"
   cmp -s "$out/page.md" "$page" || cp "$out/page.md" "$page"
 }
-
-# ---- copies of the sources ----
 
 # Brings a copy up to date. Files that are the same keep their time, so that they are not built again.
 sync_tree() {
@@ -231,13 +226,6 @@ result_of() { # tree status
   fi
 }
 
-# ---- the campaign ----
-
-record() { # key name result seconds
-  printf '%s\t%s\t%s\t%s\n' "$@" >>"$results"
-  printf 'mutants: %s: %s (%s s)\n' "$2" "$3" "$4"
-}
-
 # Builds and tests one mutant in a copy, records the result, and puts the file back.
 measure_one() { # tree name file program tests key
   local tree=$1 name=$2 file=$3 program=$4 tests=$5 key=$6 started=$SECONDS status=0 result
@@ -255,7 +243,8 @@ measure_one() { # tree name file program tests key
     return 2
   fi
   cp "$file" "$tree/$file"
-  record "$key" "$name" "$result" $((SECONDS - started))
+  printf '%s\t%s\t%s\t%s\n' "$key" "$name" "$result" $((SECONDS - started)) >>"$results"
+  printf 'mutants: %s: %s (%s s)\n' "$name" "$result" $((SECONDS - started))
 }
 
 # All tests that the mutants to be measured need, unchanged: they have to pass.
@@ -329,8 +318,6 @@ judge() {
     $5 == "SURVIVED" && $4 != "" { next }
     { print "mutants: " $1 ": " $5 " (" $2 ")" }' "$out/verdicts.tsv"
 }
-
-# ---- self-test ----
 
 # refused CASE SED PATTERN: with the list changed by SED, --check fails in a line like PATTERN.
 refused() {
