@@ -1,5 +1,6 @@
-"""Certificates of runs: each byte of evidence is checked here as docs/certificate.md defines it. Forged ones, which must not be
-proved. Some scenes also in tiles, by the program. tests/verify/certificate/verified_test.py compares the checker that Coq has proved."""
+"""Certificates of runs: each byte of evidence is checked here as docs/certificate.md defines it. Forged ones, which farcull must
+not prove. Some scenes also in tiles, by the program. That the checker proved in Coq gives the same verdicts as farcull is tested
+by tests/verify/certificate/verified_test.py."""
 import base64
 import hashlib
 import json

@@ -6,7 +6,7 @@ import farcull
 import numpy as np
 
 from . import exact, solids
-from .lab import all_pairs, as_tuples, indexed, require, rotation, soup, starts_of
+from .lab import all_pairs, as_tuples, indexed, require, rotation, soup
 
 FAULTS = ["contained called clear", "clash called touch", "a lower bound of the depth too large", "a depth too small",
           "a pair of triangles not counted"]

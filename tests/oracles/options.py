@@ -53,7 +53,8 @@ def scene(rng, spoil):
     if command == "distance":
         corners += np.repeat([0, rng.choice([0, 9]), rng.choice([0, 9, 20])], sizes)[:, None, None]
     V, F = indexed(corners)
-    files = [write_off(HERE + name + ".off", V, F[start : start + size]) for name, start, size in zip(NAMES, starts_of(sizes), sizes)]
+    files = [write_off(HERE + name + ".off", V, F[start : start + size])
+             for name, start, size in zip(NAMES, starts_of(sizes), sizes)]
     write(HERE + "ignored", "# a comment\no0:p2\n")
     words = [word for name, value in given.items() for word in (name, value) if word is not None]
     facts = {f"calls of {command}": 1}
