@@ -18,11 +18,10 @@
 # compile, or one whose survival is explained was noticed; 2 the campaign could not run.
 #
 # The list is tests/mutants/*.txt. A block is
-#   === NAME
+#   === NAME: what changes, in a sentence
 #   file: the file that changes; a block without this line has that of the block before
 #   tests: a filter of googletest; each pattern of it begins with the name of a suite; without this
 #     line it is that of the block before
-#   change: what changes, in a sentence
 #   program: the program of the tests, where it is not farcull_mutant_tests
 #   explained: why no test can notice it, if none can
 #   -a line of a text that stands in the file once
@@ -75,8 +74,7 @@ blocks() { awk -f tests/mutants/blocks.awk -v mode="$1" -v name="${2-}" "${lists
 # Is this mutant among those that were asked for?
 wanted() {
   local pattern
-  ((${#patterns[@]})) || return 0
-  for pattern in "${patterns[@]}"; do
+  for pattern in "${patterns[@]-*}"; do
     # shellcheck disable=SC2053  # it is a pattern
     [[ $1 == $pattern ]] && return 0
   done
@@ -126,8 +124,6 @@ check() {
   echo "mutants: $(blocks list | wc -l) blocks fit the sources"
 }
 
-# ---- what was measured ----
-
 # What the result of a mutant rests on: its block, its file, and the files that hold its tests.
 key_of() { # name file tests
   local suites
@@ -165,8 +161,6 @@ write_table() {
     "$out/verdicts.tsv" >"$out/page.md"
   cmp -s "$out/page.md" "$page" || cp "$out/page.md" "$page"
 }
-
-# ---- copies of the sources ----
 
 # Brings a copy up to date. Files that are the same keep their time, so that they are not built again.
 sync_tree() {
@@ -232,13 +226,6 @@ result_of() { # tree status
   fi
 }
 
-# ---- the campaign ----
-
-record() { # key name result seconds
-  printf '%s\t%s\t%s\t%s\n' "$@" >>"$results"
-  printf 'mutants: %s: %s (%s s)\n' "$2" "$3" "$4"
-}
-
 # Builds and tests one mutant in a copy, records the result, and puts the file back.
 measure_one() { # tree name file program tests key
   local tree=$1 name=$2 file=$3 program=$4 tests=$5 key=$6 started=$SECONDS status=0 result
@@ -256,7 +243,8 @@ measure_one() { # tree name file program tests key
     return 2
   fi
   cp "$file" "$tree/$file"
-  record "$key" "$name" "$result" $((SECONDS - started))
+  printf '%s\t%s\t%s\t%s\n' "$key" "$name" "$result" $((SECONDS - started)) >>"$results"
+  printf 'mutants: %s: %s (%s s)\n' "$name" "$result" $((SECONDS - started))
 }
 
 # All tests that the mutants to be measured need, unchanged: they have to pass.
@@ -331,8 +319,6 @@ judge() {
     { print "mutants: " $1 ": " $5 " (" $2 ")" }' "$out/verdicts.tsv"
 }
 
-# ---- self-test ----
-
 # refused CASE SED PATTERN: with the list changed by SED, --check fails in a line like PATTERN.
 refused() {
   local said status=0
@@ -364,7 +350,7 @@ self_test() {
   refused "another folder" 's/^file: .*/file: experiments\/command\/main.cpp/' 'is not in core'
   refused "no such test" 's/Budget\.\*/Budget.Nowhere/' 'no test is called Budget.Nowhere'
   refused "no tests" 's/^tests: .*//' 'names no tests'
-  refused "no sentence" 's/^change: .*/change: nothing/' 'is no sentence'
+  refused "no sentence" 's/^(=== [a-z-]+): .*/\1: nothing/' 'is no sentence'
   refused "no change" 's/, as before$//' 'it changes nothing'
   refused "two of a name" 's/^# (.*)$/=== control-comment/' 'a second block of this name'
   refused "a line in no block" 's/^# /lost /' 'stands in no block'

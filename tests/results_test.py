@@ -16,31 +16,28 @@ FARCULL = os.path.join(ROOT, 'build', 'farcull')
 METHODS = ['core', 'offsets', 'verify', 'experiments/method']
 
 
-def page_text(page):
-    with open(f'{ROOT}/docs/results/{page}.md', encoding='utf-8') as file:
+def read(path):
+    with open(path, encoding='utf-8') as file:
         return file.read()
 
 
-def call(*words, **environment):
+def page_text(page):
+    return read(f'{ROOT}/docs/results/{page}.md')
+
+
+def call(*words, statuses=(0,)):
     """What the command prints; an error if it fails."""
-    ran = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, env={**os.environ, 'FARCULL_BUILT': '1', **environment})
-    if ran.returncode:
+    ran = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, env={**os.environ, 'FARCULL_BUILT': '1'})
+    if ran.returncode not in statuses:
         raise RuntimeError(f'{" ".join(words)}: status {ran.returncode}\n{ran.stdout[-500:]}{ran.stderr[-1500:]}')
     return ran.stdout
-
-
-def farcull(*words):
-    return call(FARCULL, *words)
 
 
 def record(*words, missing=False):
     """The JSON of a command. missing: it may end with 1, since pairs are missed on purpose."""
     with tempfile.TemporaryDirectory() as folder:
-        ran = subprocess.run([FARCULL, *words, '--json', f'{folder}/r.json'], cwd=ROOT, capture_output=True, text=True)
-        if ran.returncode not in ((0, 1) if missing else (0,)):
-            raise RuntimeError(f'{" ".join(words)}: status {ran.returncode}\n{ran.stderr[-1500:]}')
-        with open(f'{folder}/r.json', encoding='utf-8') as file:
-            return json.load(file)
+        call(FARCULL, *words, '--json', f'{folder}/r.json', statuses=(0, 1) if missing else (0,))
+        return json.loads(read(f'{folder}/r.json'))
 
 
 def tables(text):
@@ -86,10 +83,9 @@ def lacks_row(page, *cells):
 def written(study, *words):
     """The report of a study."""
     with tempfile.TemporaryDirectory() as folder:
-        farcull('experiment', study, '--out', folder, *words)
-        farcull('report', folder)
-        with open(f'{folder}/report/results.md', encoding='utf-8') as file:
-            return file.read()
+        call(FARCULL, 'experiment', study, '--out', folder, *words)
+        call(FARCULL, 'report', folder)
+        return read(f'{folder}/report/results.md')
 
 
 def headline():
@@ -97,28 +93,18 @@ def headline():
     return columns_differ('headline', made) + counts_differ('headline', made, '.*missed', 1)
 
 
-def studies():
-    return columns_differ('studies', written('all', '--quick'))
-
-
-def proximity():
-    return columns_differ('proximity', written('proximity', '--quick'))
-
-
 def stages():
     with tempfile.TemporaryDirectory() as folder:
         call('/usr/bin/python3', 'experiments/report/stages.py', FARCULL, f'{folder}/page.md', f'{folder}/stages.svg', 'two-bunnies',
              'torii')
-        with open(f'{folder}/page.md', encoding='utf-8') as file:
-            made = file.read()
+        made = read(f'{folder}/page.md')
     return columns_differ('stages', made) + counts_differ('stages', made, 'triangles|boxes leave|view 1|2|pairs tested', 2)
 
 
 def libraries():
     with tempfile.TemporaryDirectory() as folder:
         call('bash', 'experiments/libraries.sh', '--quick', folder)
-        with open(f'{folder}/report/results.md', encoding='utf-8') as file:
-            return columns_differ('libraries', file.read())
+        return columns_differ('libraries', read(f'{folder}/report/results.md'))
 
 
 def bench():
@@ -162,9 +148,8 @@ def tiles():
             with open(f'{folder}/t{k}.json', 'w', encoding='utf-8') as file:
                 json.dump(one, file)
             fullest, candidates = max(fullest, one['tile']['triangles']), max(candidates, one['candidate_pairs'])
-        farcull('merge', *(f'{folder}/t{k}.json' for k in (1, 2, 3, 4)), '-o', f'{folder}/pairs.csv')
-        with open(f'{folder}/pairs.csv', encoding='utf-8') as file:
-            pairs = sum(1 for line in file) - 1
+        call(FARCULL, 'merge', *(f'{folder}/t{k}.json' for k in (1, 2, 3, 4)), '-o', f'{folder}/pairs.csv')
+        pairs = read(f'{folder}/pairs.csv').count('\n') - 1
     return lacks_row('tiles', '1,000,000', fullest, candidates, pairs)
 
 
@@ -176,10 +161,10 @@ def drivers():
 def misses():
     """The command writes the page and its data, which have to stay as they are."""
     paths = [f'{ROOT}/docs/results/misses.{kind}' for kind in ('md', 'csv')]
-    texts = [[open(path, encoding='utf-8').read() for path in paths]]
+    texts = [[read(path) for path in paths]]
     try:
         call(sys.executable, 'experiments/misses.py', FARCULL)
-        texts.append([open(path, encoding='utf-8').read() for path in paths])
+        texts.append([read(path) for path in paths])
     finally:
         for path, text in zip(paths, texts[0]):
             with open(path, 'w', encoding='utf-8') as file:
@@ -187,20 +172,16 @@ def misses():
     return [] if texts[0] == texts[1] else ['its table or its data']
 
 
-def mutants():
-    call('bash', 'tests/mutants.sh', '--check')
-    return []
-
-
-PAGES = {'headline': (headline, METHODS), 'studies': (studies, [*METHODS, 'experiments/studies', 'experiments/report']),
-         'stages': (stages, [*METHODS, 'experiments/report/stages.py']), 'proximity': (proximity, ['core', 'verify', 'experiments/studies']),
+PAGES = {'headline': (headline, METHODS), 'stages': (stages, [*METHODS, 'experiments/report/stages.py']),
+         'studies': (lambda: columns_differ('studies', written('all', '--quick')), [*METHODS, 'experiments/studies', 'experiments/report']),
+         'proximity': (lambda: columns_differ('proximity', written('proximity', '--quick')), ['core', 'verify', 'experiments/studies']),
          'libraries': (libraries, ['core', 'verify', 'experiments/suite', 'experiments/peers']),
          'bench': (bench, ['core/boxes', 'verify', 'experiments/peers']),
          'bench-distances': (bench_distances, ['core/proximity', 'core/boxes', 'verify', 'experiments/peers']),
          'cloth-solver': (cloth_solver, [*METHODS, 'experiments/scenes/cloth']),
          'distances': (distances, ['core/proximity', 'core/boxes', 'verify']), 'tiles': (tiles, ['core/boxes', 'experiments/tiles']),
          'misses': (misses, METHODS),
-         'drivers': (drivers, ['core/gl', 'core/view', 'experiments/method']), 'mutants': (mutants, ['tests/mutants'])}
+         'drivers': (drivers, ['core/gl', 'core/view', 'experiments/method'])}
 
 
 def changes(page, paths):

@@ -29,10 +29,11 @@ fuzz() {
   rm -rf "$seeds"
   mkdir -p "$corpus" "$seeds" build-fuzz/findings
   tar -xf "tests/fuzz/corpus/$2.tar.gz" -C "$seeds"
+  cat tests/fuzz/common.dict "tests/fuzz/$2.dict" >"build-fuzz/$2.dict"
   echo "fuzz: $1 for $seconds s (all output: $log)"
   # The time limit finds hangs: an input of 4 KiB takes milliseconds. The targets compare every
   # allocation with the size of the input; the memory limits find allocations without operator new.
-  if ! "build-fuzz/tests/fuzz/$1" "$corpus" "$seeds" -dict="tests/fuzz/$2.dict" \
+  if ! "build-fuzz/tests/fuzz/$1" "$corpus" "$seeds" -dict="build-fuzz/$2.dict" \
     -max_len=4096 -timeout=10 -malloc_limit_mb=64 -rss_limit_mb=2048 -max_total_time="$seconds" \
     -artifact_prefix="build-fuzz/findings/$1-" -print_final_stats=1 >"$log" 2>&1; then
     grep -E '^finding:|ERROR:|SUMMARY:|runtime error:|terminate called|what\(\)|written to' "$log" \

@@ -2,7 +2,7 @@
 #   awk -f blocks.awk -v mode=list LIST...              a line for each block: name, file, program, tests, change, explained; by tabs
 #   awk -f blocks.awk -v mode=check LIST...             a line for each violation of the form
 #   awk -f blocks.awk -v mode=apply -v name=NAME LIST...  the block's file with the new text in place of the old one
-#   awk -f blocks.awk -v mode=block -v name=NAME LIST...  the block as it stands
+#   awk -f blocks.awk -v mode=block -v name=NAME LIST...  the block, with the lines that it takes from the one before
 function violation(text) { print at[n] ": " names[n] ": " text }
 
 function whole(file,   text, line) {
@@ -46,13 +46,18 @@ FNR == 1 { open = 0 }
 /^=== / {
   finish()
   open = 1
-  names[++n] = substr($0, 5)
-  at[n] = FILENAME
-  raw[n] = $0 "\n"
+  at[++n] = FILENAME
+  split($2, words, ":")
+  names[n] = words[1]
+  part["change"] = substr($0, length(names[n]) + 7)
+  raw[n] = "=== " names[n] "\n"
   next
 }
 open && !/^file: / { inherit("file") }
-open && /^change: / { inherit("tests") }
+open && /^[-+]/ && !("old" in part || "new" in part) {
+  inherit("tests")
+  raw[n] = raw[n] "change: " part["change"] "\n"
+}
 open { raw[n] = raw[n] $0 "\n" }
 /^[-+]/ && open {
   key = /^-/ ? "old" : "new"

@@ -1,20 +1,18 @@
-"""Certificates of runs: each byte of evidence is checked here as docs/certificate.md defines it. Forged ones, which no checker may
-prove: the one in C++, and the one that Coq has proved if it is built. Some scenes also in tiles, by the program."""
+"""Certificates of runs: each byte of evidence is checked here as docs/certificate.md defines it. Forged ones, which farcull must
+not prove. Some scenes also in tiles, by the program. That the checker proved in Coq gives the same verdicts as farcull is tested
+by tests/verify/certificate/verified_test.py."""
 import base64
 import hashlib
 import json
-import os
-import re
 import shutil
 
 import farcull
 import numpy as np
 
 from . import exact
-from .lab import HERE, PROGRAM, all_pairs, as_tuples, call, dropped, indexed, require, rows, starts_of, write, write_off
+from .lab import HERE, all_pairs, as_tuples, call, dropped, indexed, require, rows, starts_of, write_off
 
 FAULTS = ["a dropped pair of the list", "a byte of a pair that meets", "a verdict about a forged certificate", "a tile left out"]
-VERIFIED = os.path.join(os.path.dirname(os.path.realpath(PROGRAM)), "farcull-check-verified")
 MEETS, NEIGHBOURS, KEPT = 38, 39, 64
 
 
@@ -130,23 +128,11 @@ def scene(rng, spoil):
         verdict = farcull.check(made, pairs=np.array(wrong, int).reshape(-1, 2), clearance=float(clearance)).verdict
         require(verdict != "proved", "a wrong list is proved", wrong, found)
     facts = {"pairs of boxes": len(pairs), "pairs": len(found), "forged": 0}
-    texts = [(text, ["proved"]), *forged(rng, certificate, evidence)]
-    for forgery, right in texts:
+    for forgery, right in [(text, ["proved"]), *forged(rng, certificate, evidence)]:
         verdict = farcull.check(made, forgery).verdict
         verdict = spoil("a verdict about a forged certificate", verdict, lambda v: None if v == "proved" else "proved")
         require(verdict in right, f"the verdict is {verdict}, not {right}", forgery)
         facts["forged"] += right != ["proved"]
-    if os.path.exists(VERIFIED):
-        facts["by the proved checker"] = len(texts)
-        words = [len(sizes), *(n + (s << 32) for n, s in zip(sizes, selves))]
-        write(HERE + "scene", np.array(words, "<u8").tobytes() + corners.astype("<f8").tobytes())
-        names = []
-        for k, (forgery, _) in enumerate(texts):
-            names += [write(f"{HERE}{k}.json", forgery), HERE + "scene"]
-        status, out, err = call(*names, program=VERIFIED)
-        verdicts = re.findall("^verified   (proved|refuted|not proved):", out, re.MULTILINE)
-        require(len(verdicts) == len(texts) and all(v in right for v, (_, right) in zip(verdicts, texts)),
-                "verdicts of the proved checker", verdicts, [right for _, right in texts], out, err)
     if rng.random() < 0.02 or spoil.fault == "a tile left out":
         facts["scenes in tiles"] = 1
         in_tiles(rng, spoil, V, F, sizes, selves, clearance, listed)
@@ -157,10 +143,8 @@ def in_tiles(rng, spoil, V, F, sizes, selves, clearance, listed):
     """The program: certificates and lists of all tiles, their merged list, and the checks of both."""
     if len(set(selves)) > 1:
         return
-    files, at = [], starts_of(sizes)
-    for k, (start, size) in enumerate(zip(at, sizes)):
-        files.append(f"{HERE}part{k}.off")
-        write_off(files[-1], V, F[start : start + size])
+    files = [write_off(f"{HERE}part{k}.off", V, F[start : start + size])
+             for k, (start, size) in enumerate(zip(starts_of(sizes), sizes))]
     options = ["--self"] if selves[0] else []
     tiles = rng.randint(2, 4)
     more = ["--clearance", clearance] if clearance else []
@@ -176,6 +160,5 @@ def in_tiles(rng, spoil, V, F, sizes, selves, clearance, listed):
     if spoil.fault == "a tile left out":  # its list is that of the tile before
         spoil("a tile left out", None, lambda _: True)
         shutil.copy(HERE + "t1.json", HERE + "t2.json")
-    verified = ["--verified"] if os.path.exists(VERIFIED) else []
-    status, out, err = call("check", f"{HERE}t%d.json", *files, *options, "--tiles", tiles, "--pairs", merged, *verified)
+    status, out, err = call("check", f"{HERE}t%d.json", *files, *options, "--tiles", tiles, "--pairs", merged)
     require(status == 0 and out.startswith("proved"), "check of tiles", status, out, err)

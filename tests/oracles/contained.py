@@ -6,7 +6,7 @@ import farcull
 import numpy as np
 
 from . import exact, solids
-from .lab import all_pairs, as_tuples, indexed, require, rotation, soup, starts_of
+from .lab import all_pairs, as_tuples, indexed, require, rotation, soup
 
 FAULTS = ["contained called clear", "clash called touch", "a lower bound of the depth too large", "a depth too small",
           "a pair of triangles not counted"]
@@ -17,22 +17,14 @@ MODIFIED = ["turned", "a piece turned", "doubled", "doubled both ways", "open", 
 def modified(rng, triangles, how):
     turned = triangles[:, [0, 2, 1]]
     k = rng.randrange(len(triangles))
-    if how == "turned":
-        return turned
     if how == "a piece turned":
-        piece = rng.choice(exact.pieces(as_tuples(triangles)))
+        k = rng.choice(exact.pieces(as_tuples(triangles)))
+    if how in ("a piece turned", "one triangle turned"):
         out = triangles.copy()
-        out[piece] = turned[piece]
+        out[k] = turned[k]
         return out
-    if how == "doubled":
-        return np.concatenate([triangles, triangles])
-    if how == "doubled both ways":
-        return np.concatenate([triangles, turned])
-    if how == "open":
-        return np.delete(triangles, k, 0)
-    if how == "one triangle turned":
-        return np.concatenate([triangles[:k], turned[k : k + 1], triangles[k + 1 :]])
-    return triangles
+    return {"turned": turned, "open": np.delete(triangles, k, 0), "doubled": np.concatenate([triangles, triangles]),
+            "doubled both ways": np.concatenate([triangles, turned])}.get(how, triangles)
 
 
 class Part:
@@ -45,7 +37,7 @@ class Part:
             other = solids.random_cells(rng, size)
             surface = np.concatenate([surface, solids.surface(rng, other, edge, self.offset)])
             cells = cells | other
-        self.cells = solids.refined(cells, edge)
+        self.cells = cells.repeat(edge, 0).repeat(edge, 1).repeat(edge, 2)  # of edge 1
         self.triangles = modified(rng, surface, self.how)
         self.mesh = as_tuples(self.triangles)
 

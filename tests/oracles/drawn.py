@@ -36,10 +36,8 @@ def scene(rng, spoil):
         power = -1074 if place == "denormal" else rng.randint(-300, 300)
     V, F = soup(images)
     V = np.ldexp(V, power)
-    files = []
-    for k, (start, size) in enumerate(zip(starts_of(sizes), sizes)):
-        files.append(f"{HERE}d{k}.off")
-        write_off(files[-1], V[3 * start : 3 * (start + size)], F[:size])
+    files = [write_off(f"{HERE}d{k}.off", V[3 * start : 3 * (start + size)], F[:size])
+             for k, (start, size) in enumerate(zip(starts_of(sizes), sizes))]
     a, b = all_pairs(sizes)
     expected = rows(np.stack([a, b], 1)[exact.meet(corners[a], corners[b])])
     words = ["--resolution", rng.choice([16, 64, 256]), "--device", "native", "--broad-phase", rng.choice(["objects", "triangles"])]

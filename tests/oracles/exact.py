@@ -230,8 +230,6 @@ def meet_as_neighbours(p, q, points):
     return any(not contains(hull_of((shared * 3)[:3] if len(shared) < 3 else shared), x) for x in points)
 
 
-# ---- meshes ----
-
 def edge_counts(mesh):
     """Per edge, by positions, how often triangles pass it in either direction; (n, 3, 3) triangles as tuples."""
     counts = {}

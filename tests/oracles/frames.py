@@ -10,23 +10,16 @@ FAULTS = ["the answer of the frame before", "a dropped pair", "a dropped answer"
 FAILED, ANSWERED, LABELS = range(3)  # of the call before
 
 
-def triangles_of(rng, sizes, spread):
-    """Corners within 24 of 0."""
-    out = []
-    for size in sizes:
-        at = np.array([rng.randint(-spread, spread) for _ in range(3)])
-        small = rng.choice([2, 6])
-        out += [[at + [rng.randint(-small, small) for _ in range(3)] for _ in range(3)] for _ in range(size)]
-    return np.array(out)
-
-
 class Frame:
     """The triangles as they were given, and as a pose moved them."""
 
     def __init__(self, rng, sizes, spread):
-        self.sizes = sizes
-        self.given = self.moved = triangles_of(rng, sizes, spread)
-        self.order = None  # with labels: the place of each triangle of the call
+        self.sizes, triangles = sizes, []
+        for size in sizes:
+            at = np.array([rng.randint(-spread, spread) for _ in range(3)])
+            small = rng.choice([2, 6])
+            triangles += [[at + [rng.randint(-small, small) for _ in range(3)] for _ in range(3)] for _ in range(size)]
+        self.given = self.moved = np.array(triangles)
 
     def step(self, rng):
         given = self.given.copy()

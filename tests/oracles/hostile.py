@@ -2,6 +2,7 @@
 stack, a decimal comma, no HOME, no /proc, one CPU, standard input. Either the answer is that of the same scene without damage, or
 there is an error that says so; never a crash."""
 import atexit
+import functools
 import gzip
 import json
 import os
@@ -14,17 +15,12 @@ import farcull
 import numpy as np
 
 from . import exact
-from .lab import BOXES_OPTION, HERE, all_pairs, call, dropped, indexed, read_json, require, rows, starts_of, write
+from .lab import BOXES_OPTION, HERE, all_pairs, call, dropped, indexed, off, read_json, require, rows, starts_of, write
 
 FAULTS = ["a dropped pair", "another corner"]
 SECONDS = 5  # of CPU time for a file of some hundred bytes
 NUMBERS = ["1", "2", "3", "0.5", "nan", "inf", "-inf", "1e999", "1e-999", "-1", "0", "4294967296", "99999999999",
            "9" * 400, "0x10", "1,5", "", "1e", "--1"]
-
-
-def off(V, F):
-    lines = [f"{len(V)} {len(F)} 0"] + [" ".join(map(repr, v)) for v in V] + ["3 %d %d %d" % tuple(f) for f in F]
-    return "OFF\n" + "\n".join(lines) + "\n"
 
 
 def obj(V, F):
@@ -101,16 +97,11 @@ def damaged(rng, data):
     return data
 
 
-def random_meshes(rng):
-    """Corners that a float holds, since binary STL has no others."""
-    sizes = [rng.randint(1, 4) for _ in range(2)]
-    corners = np.array([[[rng.randint(0, 5) for _ in range(3)] for _ in range(3)] for _ in range(sum(sizes))])
-    return sizes, corners, float(rng.choice([1, 0.5, 2.0**-100, 2.0**100, -3]))
-
-
 def scene(rng, spoil):
     started = time.process_time()
-    sizes, corners, unit = random_meshes(rng)
+    sizes = [rng.randint(1, 4) for _ in range(2)]
+    corners = np.array([[[rng.randint(0, 5) for _ in range(3)] for _ in range(3)] for _ in range(sum(sizes))])
+    unit = float(rng.choice([1, 0.5, 2.0**-100, 2.0**100, -3]))  # a float holds all corners, since binary STL has no others
     files, ending = [], rng.choice(list(FORMATS))
     for k, (start, size) in enumerate(zip(starts_of(sizes), sizes)):
         V, F = indexed(corners[start : start + size])
@@ -158,6 +149,7 @@ def scene(rng, spoil):
     return facts
 
 
+@functools.cache
 def locales():
     """A folder with a locale of decimal commas, or None. The program is no Python, so the variables alone decide."""
     folder = HERE + "locales"
@@ -166,6 +158,7 @@ def locales():
     return folder if os.path.exists(folder + "/de_DE.UTF-8") and made.returncode in (0, 1) else None
 
 
+@functools.cache
 def small_disk():
     """A folder on a disk of 16 KiB, or None."""
     folder = HERE + "disk"
@@ -174,16 +167,6 @@ def small_disk():
         return None
     atexit.register(subprocess.run, ["umount", folder], check=False)
     return folder
-
-
-KEPT = {}
-
-
-def once(make):
-    """The result of make(), which is called in this process once."""
-    if make not in KEPT:
-        KEPT[make] = make()
-    return KEPT[make]
 
 
 def surroundings(rng, files, expected, sizes, ending):
@@ -217,9 +200,9 @@ def surroundings(rng, files, expected, sizes, ending):
         most = rng.randint(64, 1024) << 10
         same_or_error(call(*command, preexec_fn=limits(resource.RLIMIT_STACK, most)), f"a stack of {most} bytes")
     elif kind == "comma":
-        if not once(locales):
+        if not locales():
             return {"no locale of decimal commas": 1}
-        same(call(*command, env={**os.environ, "LOCPATH": once(locales), "LC_ALL": "de_DE.UTF-8"}), "decimal commas")
+        same(call(*command, env={**os.environ, "LOCPATH": locales(), "LC_ALL": "de_DE.UTF-8"}), "decimal commas")
     elif kind == "no home":
         left = {k: v for k, v in os.environ.items() if k not in ("HOME", "XDG_CACHE_HOME")}
         same(call(*command, env=rng.choice([left, {**left, "HOME": "/proc/1/none"}, {**left, "HOME": ""}, {}])), kind)
@@ -227,22 +210,19 @@ def surroundings(rng, files, expected, sizes, ending):
         same(call(*command, env={**os.environ, "XDG_CACHE_HOME": rng.choice(["/dev/null", "/proc", "relative", files[0]])}), kind)
     elif kind == "no /proc":
         hidden = ["unshare", "-m", "sh", "-c", 'mount -t tmpfs none /proc && exec "$@"', "sh"]
-        if once(can_hide):
+        if can_hide():
             same(call(*command, before=hidden), kind)
     elif kind == "one CPU":
         same(call(*command, before=["taskset", "-c", "0"]), kind)
     elif kind == "full disk":
-        if once(small_disk):
+        if small_disk():
             try:
-                write(once(small_disk) + "/filler", b"x" * rng.choice([0, 8 << 10, 16 << 10]))
+                write(small_disk() + "/filler", b"x" * rng.choice([0, 8 << 10, 16 << 10]))
             except OSError:
                 pass
-            out = once(small_disk) + "/out.json"
+            out = small_disk() + "/out.json"
             got = call("run", *files, "--json", out)
-            if got[0] == 0:
-                read_json(out)
-            else:
-                require(got[0] == 2 and "cannot be written" in got[2], "a full disk", got)
+            require(got[0] == 2 and "cannot be written" in got[2] or got[0] == 0 and read_json(out), "a full disk", got)
             if os.path.exists(out):
                 os.remove(out)
     elif kind == "stdin":
@@ -263,5 +243,6 @@ def surroundings(rng, files, expected, sizes, ending):
     return {f"place: {kind}": 1}
 
 
+@functools.cache
 def can_hide():
     return call("-m", "sh", "-c", "mount -t tmpfs none /proc", program="unshare")[0] == 0

@@ -88,11 +88,15 @@ def rows(pairs):
     return list(map(tuple, np.asarray(pairs).reshape(-1, 2).tolist()))
 
 
-def write_off(path, V, F):
+def off(V, F):
     text = [f"OFF\n{len(V)} {len(F)} 0"]
     text += [" ".join(map(repr, v)) for v in np.asarray(V, float).tolist()]
     text += ["3 %d %d %d" % tuple(f) for f in np.asarray(F).tolist()]
-    write(path, "\n".join(text) + "\n")
+    return "\n".join(text) + "\n"
+
+
+def write_off(path, V, F):
+    return write(path, off(V, F))
 
 
 def write(path, data):

@@ -53,18 +53,16 @@ def scene(rng, spoil):
     if command == "distance":
         corners += np.repeat([0, rng.choice([0, 9]), rng.choice([0, 9, 20])], sizes)[:, None, None]
     V, F = indexed(corners)
-    files = []
-    for name, start, size in zip(NAMES, starts_of(sizes), sizes):
-        files.append(HERE + name + ".off")
-        write_off(files[-1], V, F[start : start + size])
+    files = [write_off(HERE + name + ".off", V, F[start : start + size])
+             for name, start, size in zip(NAMES, starts_of(sizes), sizes)]
     write(HERE + "ignored", "# a comment\no0:p2\n")
     words = [word for name, value in given.items() for word in (name, value) if word is not None]
     facts = {f"calls of {command}": 1}
     for pair in itertools.combinations(sorted((command, *item) for item in given.items()), 2):
         facts["new pairs of options"] = facts.get("new pairs of options", 0) + (pair not in seen)
         seen.add(pair)
-    question = Question(corners, sizes, given)
-    status, out, err, more = globals()["ask_" + command](rng, files, words, question, spoil)
+    question = Question(command, corners, sizes, given)
+    status, out, err, more = globals()["ask_" + command.replace("verify", "run")](rng, files, words, question, spoil)
     status = spoil("another exit status", status, lambda s: 1 - s if s in (0, 1) else None)
     say = " ".join([command, *words]), status, out[-600:], err, sizes, question.tuples
     require(status in (0, 1, 2) and "\x1b" not in err, "a crash", *say)
@@ -92,8 +90,8 @@ def objects_of(text):
 class Question:
     """What the options ask, and the exact answer."""
 
-    def __init__(self, corners, sizes, given):
-        self.tuples, self.sizes, self.given = as_tuples(corners), sizes, given
+    def __init__(self, command, corners, sizes, given):
+        self.command, self.tuples, self.sizes, self.given = command, as_tuples(corners), sizes, given
         self.owner = np.repeat(np.arange(len(sizes)), sizes).tolist()
         self.self = "--self" in given
         self.clearance = int(given.get("--clearance", 0))
@@ -130,8 +128,8 @@ KEYS = {"--method": "method", "--resolution": "resolution", "--radius": None, "-
         "--clearance": "clearance", "--limit": "limit"}
 
 
-def ask_run(rng, files, words, question, spoil, command="run"):
-    given = question.given
+def ask_run(rng, files, words, question, spoil):
+    given, command = question.given, question.command
     status, out, err = call(command, *files, *words, "--pairs", HERE + "pairs.csv", "--json", HERE + "r.json")
 
     def check(status, say):
@@ -182,10 +180,6 @@ def ask_run(rng, files, words, question, spoil, command="run"):
             require((code == 0) == (whole and len(rows) == len(wanted) and not missed), "the check of the certificate", code, said, *say)
 
     return status, out, err, check
-
-
-def ask_verify(rng, files, words, question, spoil):
-    return ask_run(rng, files, words, question, spoil, "verify")
 
 
 def ask_check(rng, files, words, question, spoil):

@@ -50,11 +50,6 @@ def surface(rng, cells, edge, offset):
     return np.array(out) * edge + offset
 
 
-def refined(cells, edge):
-    """The same solid as cells of edge 1."""
-    return cells.repeat(edge, 0).repeat(edge, 1).repeat(edge, 2)
-
-
 def differences(a, b, offset):
     """Which cells of b, at this offset, are where from cells of a: a boolean array, and what its corner stands for."""
     out = np.zeros(np.add(a.shape, b.shape) - 1, bool)

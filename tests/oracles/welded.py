@@ -53,10 +53,7 @@ def scene(rng, spoil):
     tolerance = rng.choice([0, 1, 2, 3, 5, 12, 40])
     if rng.random() < 0.5:  # the square of a tolerance between two whole squares
         tolerance += 0.5
-    files = []
-    for name, (V, F) in zip(names, parts):
-        files.append(HERE + name + ".off")
-        write_off(files[-1], V, F)
+    files = [write_off(HERE + name + ".off", V, F) for name, (V, F) in zip(names, parts)]
     merged = [(V, weld(V.tolist(), F, tolerance**2)) for V, F in parts]
     words = [*names, *names, "link*", "*a*", "*", "b+*"]
     patterns = [[rng.choice(words) for _ in range(2)] for _ in range(rng.choice([0, 1, 1, 2]))]

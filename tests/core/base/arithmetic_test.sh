@@ -38,8 +38,8 @@ preprocesses() {
 }
 
 gcc=yes
-IFS=$'\t' read -r file command < <(grep "^$source/verify/filter.cpp" "$work/commands")
-eval "$command -dM -E -x c++ /dev/null -o -" >"$work/macros"
+IFS=$'\t' read -r filter like_filter < <(grep "^$source/verify/filter.cpp" "$work/commands")
+eval "$like_filter -dM -E -x c++ /dev/null -o -" >"$work/macros"
 if grep -q __clang__ "$work/macros"; then gcc=; fi
 
 refused=(-ffast-math -Ofast -ffinite-math-only -funsafe-math-optimizations)
@@ -58,11 +58,9 @@ while IFS=$'\t' read -r file command; do
 done <"$work/commands"
 
 # One file of the checker with each of them, and with none.
-IFS=$'\t' read -r file command < <(grep "^$source/verify/filter.cpp" "$work/commands")
-like_filter=$command
-preprocesses "$file" "$command" || fail "$file: is refused as it is: $(head -n 1 "$work/message")"
+preprocesses "$filter" "$like_filter" || fail "$filter: is refused as it is: $(head -n 1 "$work/message")"
 for option in "${refused[@]}"; do
-  ! preprocesses "$file" "$command" "$option" || fail "$file: is accepted with $option"
+  ! preprocesses "$filter" "$like_filter" "$option" || fail "$filter: is accepted with $option"
 done
 
 # narrowing OPTION...: what tests/core/base/narrowing.cpp prints when compiled like verify/filter.cpp

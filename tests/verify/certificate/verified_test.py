@@ -34,7 +34,10 @@ def verdict(words):
     return status, words[-1] if status < 2 and words else '', text
 
 
-# ---- scenes ----
+def write(path, text):
+    with open(path, 'wb') as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
+
 
 def meshes(folder):
     """The objects of a scene that farcull has written: whether it is tested against itself, and its triangles."""
@@ -85,8 +88,6 @@ def random_triangles(draw, count, scale, most):
                    for _ in range(draw.choice([4, 6, 10, 3 * most]))]
         yield [[draw.choice(corners) for _ in range(3)] for _ in range(draw.randrange(2, most))]
 
-
-# ---- forged certificates ----
 
 def recount(root, data):
     kinds = [byte & 0xbf for byte in data]
@@ -183,8 +184,6 @@ def spoiled(text):
         yield text.replace(old, new, 1)
 
 
-# ---- the comparison ----
-
 class Comparison:
     def __init__(self, farcull, checker):
         self.farcull, self.checker, self.seen, self.wrong = farcull, checker, {}, []
@@ -208,9 +207,7 @@ class Comparison:
         write_words(f'{folder}/words', FUZZ_SCENE)
         with tarfile.open(archive) as inputs:
             for member in filter(tarfile.TarInfo.isfile, inputs.getmembers()):
-                text = inputs.extractfile(member).read()
-                with open(f'{folder}/certificate.json', 'wb') as file:
-                    file.write(text)
+                write(f'{folder}/certificate.json', inputs.extractfile(member).read())
                 self.both(f'{folder}/certificate.json', f'{folder}/scene.json', f'{folder}/words', f'fuzz input {member.name}')
 
     def called(self, certificate, scene, folder):
@@ -220,9 +217,8 @@ class Comparison:
             self.wrong.append(f'check --verified: {said}')
         program, other = f'{folder}/farcull', f'{folder}/farcull-check-verified'
         shutil.copy(self.farcull, program)
-        with open(other, 'w', encoding='utf-8') as file:
-            file.write('#!/bin/sh\n' + ''.join(f'echo "verified   {name} sha256 $(sha256sum <"{argument}" | cut -c1-64)"\n' for name, argument in (
-                ('certificate', '$1'), ('scene      ', '$2'))) + 'echo "verified   refuted"\nexit 1\n')
+        write(other, '#!/bin/sh\n' + ''.join(f'echo "verified   {name} sha256 $(sha256sum <"{argument}" | cut -c1-64)"\n' for name, argument in (
+            ('certificate', '$1'), ('scene      ', '$2'))) + 'echo "verified   refuted"\nexit 1\n')
         os.chmod(other, 0o755)
         said = output([program, 'check', certificate, scene, '--verified'])
         if said[0] != 2 or 'the two checkers disagree' not in said[1]:
@@ -246,8 +242,7 @@ class Comparison:
 
         def together(others, why, proved=False):
             for k, text in enumerate(others, 1):
-                with open(file % k, 'w', encoding='utf-8') as out:
-                    out.write(text)
+                write(file % k, text)
             seen = self.both(file, scene, words, f'{name}, tiles, {why}', len(others))
             if (seen == 'proved') != proved:
                 self.wrong.append(f'{name}, tiles, {why}: {seen} ({scene}, {file})')
@@ -256,8 +251,8 @@ class Comparison:
         roots = [json.loads(text) for text in texts]
         which = draw.choice([k for k, root in enumerate(roots) if root['tile']['from'] != root['tile']['to']])  # one that is not empty
         self.both(file % (which + 1), scene, words, f'{name}, tile {which + 1} of {count}')
-        changed = list(forged(texts[which], number))
-        self.both_text(draw.choice(changed), file % (which + 1), scene, words, f'{name}, a tile that is changed')
+        write(file % (which + 1), draw.choice(list(forged(texts[which], number))))
+        self.both(file % (which + 1), scene, words, f'{name}, a tile that is changed')
         together(texts[:which] + texts[which + 1:], 'one is missing')
         together(texts[:which] + [texts[which]] + texts[which:], 'one is there twice')
         border = draw.randrange(count - 1)
@@ -269,12 +264,11 @@ class Comparison:
         if None not in (tile['from'], tile['to']):
             tile['from'], tile['to'] = tile['to'], tile['from']
             together(texts[:which] + [json.dumps(backwards)] + texts[which + 1:], 'one runs backwards')
-        data = base64.b64decode(roots[which]['evidence'])
-        if data:
+        if data := base64.b64decode(roots[which]['evidence']):
             at = draw.randrange(len(data))
-            root = json.loads(texts[which])
-            root['evidence'] = base64.b64encode(data[:at] + data[at + 1:]).decode()
-            recount(root, data[:at] + data[at + 1:])
+            root, fewer = json.loads(texts[which]), data[:at] + data[at + 1:]
+            root['evidence'] = base64.b64encode(fewer).decode()
+            recount(root, fewer)
             together(texts[:which] + [json.dumps(root)] + texts[which + 1:], 'a pair is left out')
         root = json.loads(texts[which])
         root['scene']['hash'] = 'f' * 16
@@ -306,8 +300,7 @@ class Comparison:
             self.frames(name, folder, size)
             for n in range(3):
                 for k in range(size):
-                    with open(f'{folder}/c_{k}.json', 'w', encoding='utf-8') as out:
-                        out.write(changed[k][n])
+                    write(f'{folder}/c_{k}.json', changed[k][n])
                 self.frames(f'{name}, changed', folder, size)
         write_scene(folder, frames[0])
         self.tiles(f'random scene {number}', folder, frames[0], number, clearance if number % 2 == 0 else 0)
@@ -334,11 +327,6 @@ class Comparison:
                 shutil.copy(f'{folder}/c_{k}.json', kept)
                 self.wrong.append(f'{name}, frame {k} ({kept})\n  farcull: {one}\n  verified: {two}')
 
-    def both_text(self, text, file, scene, words, why):
-        with open(file, 'w', encoding='utf-8') as out:
-            out.write(text)
-        self.both(file, scene, words, why)
-
     def scene(self, name, folder, objects, number, spoil=False, clearance=None):
         scene, words, certificate, pairs = (f'{folder}/{file}' for file in ('scene.json', 'words', 'certificate.json', 'pairs.csv'))
         write_words(words, objects)
@@ -351,20 +339,17 @@ class Comparison:
         self.both(certificate, scene, words, name)
         lists = list(forged_lists(text, open(pairs, encoding='utf-8').read(), [len(triangles) for _, triangles in objects]))
         for index, other in enumerate(lists if spoil else random.Random(number).sample(lists, min(2, len(lists)))):
-            with open(certificate, 'w', encoding='utf-8') as file:
-                file.write(other)
+            write(certificate, other)
             if (seen := self.both(certificate, scene, words, f'{name}, list {index}')) != 'not proved':
                 self.wrong.append(f'{name}, list {index}: {seen}')
-        with open(certificate, 'w', encoding='utf-8') as file:
-            file.write(text)
+        write(certificate, text)
         if spoil:
             self.called(certificate, scene, folder)
         changed = list(forged(text, number))
         if not spoil:
             changed = random.Random(number).sample(changed, min(3, len(changed)))
         for index, other in enumerate(changed + (list(spoiled(text)) if spoil else [])):
-            with open(certificate, 'w', encoding='utf-8') as file:
-                file.write(other)
+            write(certificate, other)
             self.both(certificate, scene, words, f'{name}, change {index}')
 
 
@@ -400,8 +385,7 @@ def compare(farcull, checker, folder, count):
     return bool(comparison.wrong or wanted - set(comparison.seen))
 
 
-# ---- changes of the checker ----
-
+# Changes of the checker.
 MUTANTS = [
     ('clearance * clearance * dot d d <? gap * gap', 'clearance * clearance * dot d d <=? gap * gap'),
     ('(0 <=? y w) && (0 <=? z w)', '(y w <=? 0) && (0 <=? z w)'),
@@ -465,40 +449,29 @@ def mutants(sources, folder):
     """Each change compiles as a program, and its proof does not. Of the view, whose files have their statements beside the proofs,
     only that the file is refused, and not for its syntax."""
     os.makedirs(folder, exist_ok=True)
-    if os.path.exists(f'{sources}/Passes.v'):
-        tables = CULLING
-    else:
-        tables = {'Checker': (FILES, MUTANTS)}
+    tables = CULLING if os.path.exists(f'{sources}/Passes.v') else {'Checker': (FILES, MUTANTS)}
     failed, number = [], 0
-    for name, (files, table) in tables.items():
-        failed += broken_proofs(sources, folder, name, files, table, number)
-        number += len(table)
-    print('\n'.join(failed) or f'mutants: each of the {number} changes breaks the proof')
-    return bool(failed)
-
-
-def broken_proofs(sources, folder, changed, files, table, first):
-    text = open(f'{sources}/{changed}.v', encoding='utf-8').read()
-    failed = []
-    for number, (old, new) in enumerate(table, first):
+    for changed, files, old, new in ((name, files, *row) for name, (files, table) in tables.items() for row in table):
+        number += 1
+        text = open(f'{sources}/{changed}.v', encoding='utf-8').read()
         if text.count(old) != 1:
             failed.append(f'{old!r} does not occur once')
             continue
         for name in os.listdir(sources):
             if name.endswith(('.v', '.vo')):
                 shutil.copy(f'{sources}/{name}', folder)
-        with open(f'{folder}/{changed}.v', 'w', encoding='utf-8') as file:
-            file.write(text.replace(old, new))
+        write(f'{folder}/{changed}.v', text.replace(old, new))
         broken, why = 'none', ''
         for name in files:
             status, why = output(['timeout', '300', 'sh', '-c', f'cd {folder} && exec coqc -q {name}.v'])
             if status:
                 broken = name
                 break
-        print(f'mutant {number + 1}: {old.strip()}  ->  {new.strip()}: breaks {broken}', flush=True)
+        print(f'mutant {number}: {old.strip()}  ->  {new.strip()}: breaks {broken}', flush=True)
         if broken == 'none' or (broken == changed and len(files) > 1) or 'Syntax error' in why:
             failed.append(f'{new!r} breaks {broken}')
-    return failed
+    print('\n'.join(failed) or f'mutants: each of the {number} changes breaks the proof')
+    return bool(failed)
 
 
 command, *rest = sys.argv[1:]
