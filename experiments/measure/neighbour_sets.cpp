@@ -33,13 +33,13 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// Returns a limit for computed squared distances. largest: a computed squared distance. A box whose
-// computed squared distance is above the limit is truly farther away than `largest` says.
-// Derivation: let u = 2^-53. A difference, a square and two sums round. A square below 2^-1022 has
-// an absolute error of 2^-1075. So a computed squared distance has a relative error of (1 - u)^5 to
-// (1 + u)^5, and an absolute error of 2^-1072. The factor 1 + 16 u covers the relative errors of
-// two squared distances and of this product. 2^-1000 covers the absolute errors. If a square
-// overflows, the limit is infinite, and the box is kept.
+// Returns a limit for computed squared distances. largest: the computed square of a distance D. A
+// box whose computed squared distance is above the limit is truly farther away than D. Derivation:
+// let u = 2^-53. A difference, a square and two sums round. A square below 2^-1022 has an absolute
+// error of 2^-1075. So a computed squared distance has a relative error of (1 - u)^5 to (1 + u)^5,
+// and an absolute error of 2^-1072. The factor 1 + 16 u covers the relative errors of two squared
+// distances and of this product. 2^-1000 covers the absolute errors. If a square overflows, the
+// limit is infinite, and the box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // For an object a, let the bound be the least value, over all other objects, of the largest
