@@ -24,7 +24,6 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
-// Leaves out pairs of neighbours, as the peers do.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
   if (draws(method)) options.device = device;
@@ -136,7 +135,6 @@ std::optional<Disagreement> compare(const Scene& scene, const std::string& first
   return out;
 }
 
-/// Returns null if the method `boxes` was not measured.
 const BenchRow* row_of_boxes(const BenchResult& result) {
   const auto row = std::ranges::find(result.rows, "boxes", &BenchRow::name);
   return row == result.rows.end() ? nullptr : &*row;

@@ -97,7 +97,6 @@ Stage cut(const Scene& scene, std::span<const Box> boxes, std::span<const std::u
           .ms = watch.ms()};
 }
 
-// Culls with one offset after the other. Sets the triangles, views, trace and device of `out`.
 void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions& options,
                      Session& session, const Progress& progress, Candidates& out) {
   CullSettings settings = work.settings;
@@ -286,7 +285,6 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   } else if (work.patches.count > 0) {
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
-    // Puts back culled triangles that are in a candidate pair of one patch.
     const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
     std::vector<std::uint32_t> all;
     std::ranges::set_union(out.triangles, members, std::back_inserter(all));

@@ -97,7 +97,6 @@ std::string driver_environment() {
   return out;
 }
 
-// Returns the FNV-1a hash as 16 hex digits.
 std::string hash_of(const std::string& text) {
   Fnv1a hash;
   hash.add(text);
@@ -121,7 +120,6 @@ std::string processor() {
   return out.empty() ? "unknown" : out;
 }
 
-// Returns the number with three digits, or "infinite".
 std::string number(double x) {
   if (!std::isfinite(x)) return "infinite";
   char out[32];
@@ -129,7 +127,6 @@ std::string number(double x) {
   return out;
 }
 
-// The inputs as lines of a file.
 std::string text_of(const VerdictInputs& inputs) {
   std::string out;
   for (const auto& [name, value] : inputs) out += name + ": " + value + "\n";

@@ -259,7 +259,6 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
   return promise;
 }
 
-// Returns one contact for each pair. contacts: kinds or segments.
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
                                       ContactDetail contacts, unsigned threads) {
   if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
@@ -268,7 +267,6 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
   return out;
 }
 
-// Finds the contacts, unless options.contacts is `none`.
 void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const ContactDetail asked = record.options.contacts;
   if (asked == ContactDetail::none) return;

@@ -26,8 +26,8 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session,
 
 /// How a caller uses run(). The user's options are in RunOptions.
 struct RunUse {
-  /// Removes candidates that other runs decide (tiles). Called before the exact tests. May be
-  /// empty. With a filter, no pair is accounted for.
+  /// Removes candidates that other runs decide (tiles). May be empty. Called after the accounting,
+  /// which needs all candidates, and before the exact tests.
   std::function<void(std::vector<TrianglePair>&)> filter = {};
   std::string scene_hash = {};  // scene_hash() of the scene, if the caller knows it
   /// True: the record has only the pairs, their contacts, counts, times and stages.
@@ -60,7 +60,7 @@ FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& cand
 /// order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// Returns the pairs that exact tests decided, sorted. If these pairs were not listed
+/// Returns the pairs that the exact tests got, sorted. If these pairs were not listed
 /// (Candidates::streamed), returns only the colliding pairs, neighbours included. Then all other
 /// pairs have to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
