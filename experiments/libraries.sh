@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
-# labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
-# program and the contestants, runs the study and prints where the tables are.
-#   bash experiments/libraries.sh --quick [DIR]   the small suite; two contestants are asked at a time, so
-#                                                 their times say nothing. VTK and Open3D, which are
-#                                                 large, take part only if they are installed
-#   bash experiments/libraries.sh --keep [DIR]    the small suite, one contestant after the other. When all
-#                                                 is measured, the report is copied to docs/results
-#   bash experiments/libraries.sh [DIR]           the same with the full suite, an hour and a half; a second
-#                                                 run goes on
-# DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
-# and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
-# pair or had no answer.
+# Runs the study `libraries` and makes its report (docs/libraries.md). In this study, libraries of
+# Debian and npm, textbook tests and farcull's own methods decide the pairs of a labelled suite.
+# The script installs what is missing and builds the program and the contestants.
+#   bash experiments/libraries.sh --quick [DIR]   the small suite. Two contestants run at the same
+#                                                 time, so their times mean nothing
+#   bash experiments/libraries.sh --keep [DIR]    the small suite. One contestant runs at a time. At
+#                                                 the end the report is copied to docs/results
+#   bash experiments/libraries.sh [DIR]           as --keep, with the full suite. It takes an hour
+#                                                 and a half. A second run continues the first one
+# With --quick and --keep, the large libraries VTK and Open3D are not installed.
+# DIR is the folder for the store and the report (default: build/libraries-COMMIT, then -quick or
+# -keep). The exit status is that of the study: 1 if a farcull method with a guarantee missed a pair
+# or gave no answer.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -28,7 +28,7 @@ farcull_packages+=(libccd-dev libgts-dev)
 if ! command -v npm >/dev/null; then farcull_packages+=(nodejs npm); fi
 if ((${#quick[@]} == 0)); then farcull_packages+=(libvtk9-dev libopen3d-dev); fi
 farcull_setup
-# CMake finds libraries that were installed since the last time only if it looks again.
+# Configures again, so that CMake finds libraries that were installed after the last configuration.
 [[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
 
@@ -52,8 +52,8 @@ if [[ $keep == yes && -e $out/results-1-of-2.sqlite ]]; then
 elif [[ $keep == yes || -e $out/results.sqlite ]]; then
   ask || status=$?
 else
-  # Two halves run side by side, and both need the suite. Each is a group of processes (set -m), since a
-  # background job of a script does not get an interrupt otherwise.
+  # The two halves of the study run at the same time. Each half reads the suite. With set -m, each half
+  # is a process group, so that the trap below can interrupt it.
   [[ -e $out/suite/suite.txt ]] || build/farcull suite "$out/suite"
   running=()
   set -m
@@ -73,7 +73,7 @@ if [[ $keep == yes && $status == 0 ]]; then
   cp "$out"/report/tables/libraries{,-meshes,-kinds,-distances,-calls,-families}.csv docs/results/
 fi
 echo
-# The first table of the page.
+# Prints the first table of results.md.
 sed -n '/^| contestant/,/^$/p' "$out/report/results.md" | sed '/^$/q; /^|---/d; s/^| //; s/ |$//' |
   sed 's/ | /\t/g' | column -t -s $'\t'
 if [[ $keep == no ]]; then echo "libraries: contestants were asked side by side, so their times are bounds"; fi

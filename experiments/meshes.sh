@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded
-# and unpacked, not installed, since that needs no root. (Small images also leave out documentation
-# when they install a package, and the meshes are documentation.)
-# Exit status: 0 all meshes are there; 3 they cannot be obtained, and stderr says why; anything else:
-# an error of this disk or of this script.
+# and unpacked, since installing it needs root. Small systems would also not install the meshes,
+# which are documentation.
+# Exit status: 0: all meshes are there. 3: the meshes cannot be obtained, and stderr says why.
+# Other values: an error of the disk or of this script.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 exec </dev/null
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/sbin:/sbin"
 meshes=$root/build/meshes
-# The path of the archive in the package, and on a system where the package is installed.
+# The path of the archive with the meshes in the package. An installed package has it as /$inside.
 inside=usr/share/doc/libcgal-dev/data.tar.gz
 
-# The number of triangles of each mesh. A file with another number is not the mesh of our results.
+# The number of triangles of each mesh. A file with another number is another mesh.
 declare -A triangles=(
   [bunny00.off]=75408
   [ChineseDragon-10kv.off]=19994
@@ -23,14 +23,14 @@ declare -A triangles=(
   [elephant.off]=5558
 )
 
-# Prints the number of faces of an OFF file: the second of the three counts after the word OFF, which
-# comments and empty lines may precede.
+# Prints the number of faces of an OFF file. It is the second count after the word OFF. Comments and
+# empty lines may come before the counts.
 faces_in_header() {
   awk '{ sub(/#.*/, ""); sub(/^[ \t]*[A-Z]*OFF/, "") } NF { print $2; exit }' "$1"
 }
 
-# all_in FOLDER: whether every mesh is there with its number of triangles. If not, $trouble names the
-# first one that is wrong.
+# all_in FOLDER: succeeds if the folder has every mesh with its number of triangles. Else $trouble
+# names a mesh that is missing or wrong.
 all_in() {
   local folder=$1 name found
   for name in "${!triangles[@]}"; do
@@ -48,7 +48,7 @@ all_in() {
 
 if all_in "$meshes"; then exit 0; fi
 
-# All work is done in a folder on the same file system, so that one rename puts a whole mesh in place.
+# The work folder is on the same file system, so that one rename puts a complete mesh in place.
 mkdir -p "$root/build"
 # Removes folders of runs that were killed. No run lasts an hour.
 find "$root/build" -maxdepth 1 -name 'meshes.unpacking.*' -mmin +60 -exec rm -rf {} +
@@ -57,7 +57,7 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
-# take_from ARCHIVE: unpacks its meshes, checks them and moves them to build/meshes/.
+# take_from ARCHIVE: unpacks the meshes of the archive, checks them and moves them to build/meshes/.
 take_from() {
   local archive=$1
   local -a names=("${!triangles[@]}")
@@ -77,10 +77,10 @@ take_from() {
   echo "meshes: ${#triangles[@]} in build/meshes/"
 }
 
-# Downloads the package into $work with the lists of apt. If these are missing or old, it also
-# downloads lists into $work, which needs no root and changes nothing on the system.
+# Downloads the package into $work with the system's package lists. If that fails, downloads new
+# package lists into $work and tries again. This needs no root and changes nothing on the system.
 download() {
-  # Without this option apt, run by root, works as the user _apt, which may not write here, and warns.
+  # With this option, apt as root does not change to the user _apt, who may not write here.
   local -a apt=(apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=2)
   local -a own=(-o Dir::State::Lists="$work/lists" -o Dir::Cache="$work/cache")
   mkdir -p "$work/lists/partial" "$work/cache/archives/partial"

@@ -1,5 +1,5 @@
-"""Compares the misses that `farcull plan` predicts with those of runs, on families of scenes that were not used to find the
-model, and writes the table to docs/results/misses.md and docs/results/misses.csv. Takes minutes.
+"""Compares the misses that `farcull plan` predicts with the misses of runs. Uses families of scenes that were not used to
+make the model. Writes the table to docs/results/misses.md and docs/results/misses.csv. Takes minutes.
    experiments/misses.py FARCULL"""
 import csv
 import json
@@ -29,7 +29,7 @@ def cross(a, b):
 
 
 def bar(start, end, width, sides, pieces=1, faces=None):
-    """A prism whose long faces are cut into pieces. faces: only so many long faces, without ends; None: a closed prism."""
+    """Returns a prism whose long faces are cut into pieces. faces: the number of long faces, without ends; None: closed."""
     axis = unit([q - p for p, q in zip(start, end)])
     across = unit(cross(axis, direction()))
     other, rings, turn = cross(axis, across), [], random.random()
@@ -45,7 +45,7 @@ def bar(start, end, width, sides, pieces=1, faces=None):
 
 
 def crossed(count, families, width, **shape):
-    """Families of count x count parallel bars, each family an object."""
+    """Returns families of count x count parallel bars. Each family is an object."""
     objects = [([], []) for _ in range(families)]
     for axis, (points, triangles) in enumerate(objects):
         for k in range(count * count):
@@ -58,7 +58,7 @@ def crossed(count, families, width, **shape):
 
 
 def scattered(count, length, width, **shape):
-    """Bars at random in a unit cube, each an object."""
+    """Returns bars at random places in a unit cube. Each bar is an object."""
     places = (([random.random() for _ in range(3)], direction()) for _ in range(count))
     ends = [(plus(at, way, -length / 2), plus(at, way, length / 2)) for at, way in places]
     return [bar(*both, width, **shape) for both in ends]

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# Draws the figures of the paper (docs/figures/paper-*.svg), and makes the paper, which is
-# docs/reliability.md with docs/budget.md, a PDF: build/paper.pdf.
+# Draws the figures of the paper (docs/figures/paper-*.svg), and makes the PDF of the paper (build/paper.pdf). The text
+# of the paper is docs/reliability.md and docs/budget.md.
 #   bash experiments/paper.sh [--out FILE.pdf]
-#   bash experiments/paper.sh --short [--out FILE.pdf]    docs/paper.md, two pages, as build/paper-short.pdf
-#     --out      the PDF; the figures are then drawn beside it, docs/ stays as it is, and nothing is installed
-# It needs matplotlib, pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --out
-# it installs them, as experiments/setup.sh does. If one is missing, it draws the figures, names what is missing, and
-# the status is 77.
+#   bash experiments/paper.sh --short [--out FILE.pdf]    makes build/paper-short.pdf of docs/paper.md, two pages
+#     --out      the name of the PDF. The figures are then drawn beside the PDF, and nothing is installed
+# Needs matplotlib, pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --out, the
+# script installs these packages. If a package is missing, it only draws the figures, and the exit status is 77.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
@@ -53,7 +52,7 @@ for tool in pandoc pdflatex rsvg-convert; do
     exit 77
   fi
 done
-# The fonts that pandoc's template asks for. texlive-base only recommends them.
+# pandoc's template needs the fonts of lmodern. texlive-base only recommends this package.
 if ! kpsewhich lmodern.sty >/dev/null; then
   echo "paper: NOT RUN: lmodern.sty is missing (Debian: lmodern)"
   exit 77
@@ -68,7 +67,7 @@ for figure in "$folder"/paper-*.svg; do
   rsvg-convert -f pdf -o "$work/figures/$(basename "${figure%.svg}").pdf" "$figure"
 done
 cd "$work"
-# One text of both pages. The filter makes their titles those of the paper and of its second part.
+# Joins two pages into one text. The filter replaces the titles of the two pages.
 for page in reliability budget; do
   sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/$page.md"
   echo

@@ -1,7 +1,7 @@
 """Draws the figures of the paper (docs/reliability.md), docs/figures/paper-*.svg.
    paper_figures.py CASE FOLDER     CASE: tests/cases/published-far-loses-this-pair.obj
-Lengths are in pixels. Each figure computes what it shows from the definitions of the paper. With the same matplotlib
-the files are the same."""
+Lengths are in pixels. Each figure is computed from the definitions of the paper. The same version of matplotlib gives
+the same files."""
 import html
 import io
 import re
@@ -36,7 +36,7 @@ def rectangle(points, radius):
 
 
 def deepest(corners, point):
-    """The distance of a point in a convex polygon from the nearest side's line; negative if the point is outside."""
+    """Returns the distance of a point from the nearest side's line of a convex polygon; negative outside."""
     side = np.roll(corners, -1, 0) - corners
     turn = np.sign(side[0, 0] * side[1, 1] - side[0, 1] * side[1, 0])
     away = point - corners
@@ -44,7 +44,7 @@ def deepest(corners, point):
 
 
 def sheet(width, height, panels):
-    """A sheet of width x height points, and an Axes for each panel (left, top, width, height, x0, y0, x1, y1)."""
+    """Returns a sheet of width x height points, and Axes for each panel (left, top, width, height, x0, y0, x1, y1)."""
     figure = pyplot.figure(figsize=(width / 72, height / 72))
     axes = []
     for left, top, wide, high, x0, y0, x1, y1 in panels:
@@ -108,7 +108,7 @@ def ball():
 
 
 def winding(corners, point):
-    """How often the polygon winds around a point that is on none of its sides."""
+    """Returns how often the polygon winds around a point. Precondition: the point is on no side."""
     angles = np.arctan2(*(corners - point).T[::-1])
     turns = (np.diff(np.append(angles, angles[0])) + np.pi) % (2 * np.pi) - np.pi
     return round(abs(turns.sum()) / (2 * np.pi))
@@ -139,7 +139,7 @@ def coverage():
 
 
 def distances(points, triangle):
-    """The distances of points from a triangle."""
+    """Returns the distances of points from a triangle."""
     edges = np.roll(triangle, -1, 0) - triangle
     out = np.full(len(points), np.inf)
     for corner, edge in zip(triangle, edges):
@@ -198,7 +198,7 @@ LOOKS = [(RED, "no bit"), (BLUE, "F: meets nothing earlier"), (GREEN, "L: meets 
 
 
 def intervals(segment, columns, radius):
-    """Entry and exit of the fattened segment, a rectangle, at the centre of each column; NaN where it has none."""
+    """Returns entry and exit of the fattened segment, a rectangle, at each column's centre. NaN: no entry."""
     corners = rectangle(segment.reshape(2, 2), radius)
     out = np.full((columns, 2), np.nan)
     for i in range(columns):
@@ -212,10 +212,10 @@ def intervals(segment, columns, radius):
 
 
 def run_passes():
-    """The bits of all triangles after each pass, until a round of two passes changes nothing."""
+    """Returns the bits of all triangles after each pass. Ends when a round of two passes changes nothing."""
     boxes = [(np.minimum(o[:, 1], o[:, 3]).min(), np.maximum(o[:, 1], o[:, 3]).max()) for o in SCENE]
     bits = np.zeros((3, 4), int)
-    for o in range(3):  # triangles whose depths are in no other object's box are in no region
+    for o in range(3):  # a triangle whose depths meet no other object's box is not drawn
         for t, s in enumerate(SCENE[o]):
             if all(max(s[1], s[3]) < low or min(s[1], s[3]) > high for k, (low, high) in enumerate(boxes) if k != o):
                 bits[o, t] = BOTH

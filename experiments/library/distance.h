@@ -1,6 +1,6 @@
-// Distances between objects, with nearest points (docs/proximity.md), and contacts: all pairs of
-// triangles within a distance. Which pairs are answered is decided exactly. Numbers are exact,
-// rounded once, except for `all` without `exact` (DistanceFinderOptions).
+// Finds distances between objects, with nearest points (docs/proximity.md), and all pairs of
+// triangles within a distance. Exact arithmetic decides which pairs are answers. Numbers are exact
+// and rounded once. The exception is DistanceKind::all without DistanceFinderOptions::exact.
 #pragma once
 
 #include <array>
@@ -16,56 +16,58 @@
 namespace farcull {
 
 enum class DistanceKind {
-  objects,  // the nearest triangles of every two objects, and within each object with `self`
-  nearest,  // the same for each object and its k nearest others; of ties, the lower number first
+  objects,  // the nearest triangles of every two objects; with `self` also within each object
+  nearest,  // for each object, its k nearest other objects; in a tie the lower number comes first
   all,      // every pair of triangles within a distance
 };
 
 struct DistanceFinderOptions {
   DistanceKind kind = DistanceKind::objects;
-  std::size_t k = 1;                  // with `nearest`, 1 or more
-  std::optional<double> within = {};  // leaves out answers that are farther apart; world units, 0
-                                      // or more; with `all` finite
-  bool self = false;  // also triangles of one object, without neighbours; not with `nearest`
-  std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
+  std::size_t k = 1;                  // only for `nearest`; at least 1
+  std::optional<double> within = {};  // largest distance of an answer, in world units; at least 0;
+                                      // finite with `all`
+  bool self =
+      false;  // also pairs of triangles of one object, except neighbours; not with `nearest`
+  std::vector<bool> self_objects = {};  // one `self` per object; may be empty
   bool inside = true;                   // find whether an object is inside another; not with `all`
-  /// true: sets DistanceAnswer::squared; with `all`, each number is the exact one, rounded once,
-  /// which takes about ten times as long. false, with `all`: a distance is off by at most 2^-32 of
-  /// itself (0 iff the triangles meet), a normal by 2^-15, and a point is off its triangle by at
-  /// most 2^-45 of the pair's extent. If several points are nearly as near, others may be given
-  /// than with `exact`, on other features.
+  /// true: sets DistanceAnswer::squared. With `all`, each number is then exact and rounded once,
+  /// which takes about ten times as long.
+  /// false, with `all`: the relative error of a distance is at most 2^-32. The distance is 0 iff
+  /// the triangles meet. The error of a normal is at most 2^-15. A point is off its triangle by at
+  /// most 2^-45 of the pair's extent. It may be another point that is nearly as near.
   bool exact = false;
-  /// Pairs of different objects, by their numbers from 0, that are not answered; not with
+  /// Pairs of different objects that get no answer. Objects are numbered from 0. Not with
   /// `nearest`.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
   unsigned threads = 0;  // up to 1024; 0: as many as there are cores; changes no answer
   MayGoOn may_go_on = {};
 };
 
-/// Which of two objects is inside the other. unknown: not asked, or the objects meet. none: neither
-/// is. a, b: all of this object is inside the other. not_closed: one may be inside the other, but
-/// the other is not closed, so it has no inside.
+/// Which of two objects is inside the other.
+/// unknown: not computed, or the objects meet. none: neither object is inside the other.
+/// a, b: this object is completely inside the other.
+/// not_closed: the object that may be the outer one is not closed, so it has no inside.
 enum class DistanceInside { unknown, none, a, b, not_closed };
 
 /// The distance of two objects, or with `all` of two triangles.
 struct DistanceAnswer {
   std::uint32_t object_a = 0, object_b = 0;      // a <= b
-  std::uint32_t triangle_a = 0, triangle_b = 0;  // the first nearest pair; numbered as in Pair
+  std::uint32_t triangle_a = 0, triangle_b = 0;  // in a tie the first pair; numbered as in Pair
   double distance = 0;  // rounded to nearest; infinity beyond the largest double
   std::string squared;  // with `exact`: "numerator/denominator" in lowest terms, nothing rounded
   std::array<double, 3> point_a{}, point_b{};  // nearest points, each coordinate rounded
-  /// Barycentric: the point is the mean of the triangle's corners with these weights, which are 0
-  /// or more and sum to 1 up to rounding.
+  /// Barycentric coordinates of the points: weights of the triangle's three corners. Each weight is
+  /// at least 0. Their sum is 1 up to rounding.
   std::array<double, 3> weights_a{}, weights_b{};
-  std::array<double, 3> normal{};    // unit, from point_a to point_b; zeros if the triangles meet
+  std::array<double, 3> normal{};    // unit vector from point_a to point_b; 0 if the triangles meet
   std::string feature_a, feature_b;  // where the points lie: "vertex 2", "edge 0" or "face"; edge i
                                      // goes from corner i to the next
   DistanceInside inside = DistanceInside::unknown;
 };
 
-/// Finds distances again and again. The nearest triangles of one call are the first guess of the
-/// next call, which saves time if the scene moved only a little; any other scene may follow, too.
-/// An object serves one call at a time, as a Collider does.
+/// Finds distances repeatedly. Each call begins with the nearest triangles of the previous call,
+/// which saves time if the scene moved only a little. The next call may give any scene. Only one
+/// call at a time may use a DistanceFinder.
 class DistanceFinder {
  public:
   /// Throws Error naming the option that is bad.
@@ -75,10 +77,11 @@ class DistanceFinder {
   DistanceFinder(DistanceFinder&&) noexcept;
   DistanceFinder& operator=(DistanceFinder&&) noexcept;
 
-  /// The answers, sorted by objects, then by triangles. Throws Error as Collider::find() does.
-  /// Also throws Error if kind is `all` and there are more than 4,194,304 answers, or if kind is
-  /// `objects` and there are more than 4,194,304 pairs of objects (16,777,216 if `within` is
-  /// finite). Sets and restores the floating-point environment as Collider::find() does.
+  /// Returns the answers, sorted by objects, then by triangles. Sets and restores the
+  /// floating-point environment as Collider::find() does. Throws Error as Collider::find() does,
+  /// and for
+  /// - more than 4,194,304 answers with `all`,
+  /// - more than 4,194,304 pairs of objects with `objects` (16,777,216 if `within` is finite).
   std::vector<DistanceAnswer> find(const Input& input);
 
  private:
@@ -86,7 +89,7 @@ class DistanceFinder {
   std::unique_ptr<State> state_;
 };
 
-/// DistanceFinder::find() for one scene.
+/// Calls DistanceFinder::find() once.
 std::vector<DistanceAnswer> distances(const Input& input,
                                       const DistanceFinderOptions& options = {});
 

@@ -1,6 +1,6 @@
-// Matrices of Eigen as input of the library: each row of V (n x 3) is a vertex, each row of F
-// (m x 3) a triangle. V has numbers that a double holds, F has whole numbers; any storage order.
-// Needs Eigen 3; link Eigen3::Eigen.
+// Passes matrices of Eigen to the library. Each row of V (n x 3) is a vertex. Each row of F (m x 3)
+// is a triangle. V has numbers that fit into a double. F has integers. Any storage order works.
+// Needs Eigen 3: link Eigen3::Eigen.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,8 +17,7 @@
 
 namespace farcull {
 
-/// Copies of the matrices, for any function that takes an Input. Must live as long as the Input
-/// that it converts to.
+/// Copies matrices and converts to an Input. It must live as long as that Input.
 ///
 ///   collider.find(farcull::EigenInput(V, F, object_starts));
 class EigenInput {
@@ -62,7 +61,7 @@ Result collide(const Eigen::MatrixBase<Vertices>& V, const Eigen::MatrixBase<Tri
   return collide(EigenInput(V, F, std::move(object_starts)), options);
 }
 
-/// The pose that moves points as the transform does. Precondition: the transform is affine.
+/// Returns the pose that moves points as the transform does. Precondition: the transform is affine.
 template <int Mode>
 Pose pose_of(const Eigen::Transform<double, 3, Mode>& transform) {
   Pose out;

@@ -33,7 +33,7 @@
 
 namespace farcull {
 
-/// "0.1".
+/// Returns the version of the library, as in "0.1".
 const char* version();
 
 /// How much contact detail to report.
@@ -43,9 +43,9 @@ enum class Contacts {
   segments,  // the kind, and the points that the triangles have in common
 };
 
-/// Called with the name of the current step: at once, and then about every 50 ms, in the caller's
-/// thread; the work runs in another thread. If it returns false, the call ends with the error
-/// Cancelled. If it throws, the call ends and throws the same exception.
+/// A callback that gets the name of the current step. It runs in the caller's thread, at the start
+/// and then about every 50 ms. The work runs in another thread. If the callback returns false, the
+/// work ends with the error Cancelled. If the callback throws, the work ends with that exception.
 using MayGoOn = std::function<bool(const std::string& step)>;
 
 /// The error of a call that MayGoOn cancelled.
@@ -55,16 +55,16 @@ class Cancelled : public Error {
 };
 
 struct Options {
-  unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
-  bool self = false;     // every object is tested against itself as well
-  std::vector<bool> self_objects = {};  // `self` for each object; empty, or one for each
-  double clearance = 0;    // pairs at this distance or less collide too; world units, finite, >= 0
-  bool neighbours = true;  // false: neighbours are counted, not decided
+  unsigned threads = 0;                 // at most 1024; 0: as many as there are cores
+  bool self = false;                    // also tests every object against itself
+  std::vector<bool> self_objects = {};  // one `self` per object; may be empty
+  double clearance = 0;    // pairs at most this far apart collide; world units, finite, >= 0
+  bool neighbours = true;  // false: neighbours are counted, but not tested
   Contacts contacts = Contacts::none;
-  /// Pairs of different objects, by their numbers from 0, that are not tested against each other.
+  /// Pairs of different objects that are not tested. Objects are numbered from 0.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
-  std::uint64_t limit = 0;  // how many pairs to find, neighbours included: the first ones in the
-                            // order of Pair; 0: all
+  std::uint64_t limit = 0;  // finds only this many pairs, the first in the order of Pair;
+                            // neighbours count; 0: finds all pairs
   MayGoOn may_go_on = {};
 };
 
@@ -79,21 +79,20 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// Triangles, as flat arrays of the caller. The library does not refer to them after the call.
+/// Triangles, as flat arrays of the caller. The library does not use the arrays after the call.
 struct Input {
   /// x, y, z of each vertex; finite if a triangle uses it.
   std::span<const double> vertices = {};
   /// Three indices of vertices for each triangle.
   std::span<const std::uint32_t> triangles = {};
-  /// The first triangle of each object (not a label for each triangle): 0, then rising, so that
-  /// each object has a triangle; empty: all triangles are one object.
+  /// The index of each object's first triangle (not a label for each triangle). The first index is
+  /// 0. Each index is larger than the one before. If empty, all triangles are one object.
   std::span<const std::uint32_t> object_starts = {};
-  /// The indices as 64-bit numbers, in place of `triangles`, which is then empty.
+  /// The same as `triangles`, with 64-bit indices. If given, `triangles` is empty.
   std::span<const std::int64_t> wide_triangles = {};
-  /// One for each object, which moves it; empty: no object moves. With poses, each vertex may be
-  /// used by one object only. If all other arrays are empty, the poses move the arrays of an
-  /// earlier call of the same Collider or DistanceFinder, if no call since then gave other arrays
-  /// or had bad input.
+  /// One pose for each object. If empty, no object moves. With poses, two objects must not use the
+  /// same vertex. If all other arrays are empty, the poses move the last arrays that the same
+  /// Collider or DistanceFinder got. No call after those arrays may have had bad input.
   std::span<const Pose> poses = {};
 };
 
@@ -104,7 +103,7 @@ struct Pair {
   auto operator<=>(const Pair&) const = default;
 };
 
-/// The object of a triangle, by the object_starts of the input (empty: object 0).
+/// Returns the object of a triangle. object_starts: as in Input.
 inline std::uint32_t object_of(std::span<const std::uint32_t> object_starts,
                                std::uint32_t triangle) {
   const auto after = std::upper_bound(object_starts.begin(), object_starts.end(), triangle);
@@ -117,7 +116,7 @@ inline std::uint32_t object_of(std::span<const std::uint32_t> object_starts,
 struct Contact {
   /// The first kind that fits (docs/record.md, "Kinds of contact").
   enum class Kind {
-    apart,         // no point in common, and within the clearance
+    apart,         // no point in common, but within the clearance
     equal,         // the same set of points
     touch_vertex,  // one point in common, which is a corner of A or of B
     touch_edge,    // one point in common, which is on an edge of A and on an edge of B
@@ -126,8 +125,8 @@ struct Contact {
     touch_face,    // a segment in common that is on an edge of A or of B
   };
   Kind kind = Kind::apart;
-  /// With Contacts::segments, the dimension of the points in common: 0 a point, 1 a segment, 2 a
-  /// polygon; -1 none, or not asked.
+  /// The dimension of the points in common. 0: a point. 1: a segment. 2: a polygon. -1: there is no
+  /// common point, or Options::contacts is not Contacts::segments.
   int dimension = -1;
   /// Dimension 1: the ends of the segment, the lexicographically lower one first. Dimension 0: the
   /// point, twice. Else zeros. World units, each coordinate rounded once.
@@ -135,7 +134,7 @@ struct Contact {
   bool operator==(const Contact&) const = default;
 };
 
-/// "touch-vertex" and so on.
+/// Returns the name of the kind, as in "touch-vertex".
 const char* to_string(Contact::Kind kind);
 
 struct Report {
@@ -150,7 +149,7 @@ struct Report {
 
   double candidates_ms = 0;      // wall clock, from the input to the candidates
   double exact_ms = 0;           // wall clock of the exact tests
-  std::uint64_t candidates = 0;  // without those of ignored objects
+  std::uint64_t candidates = 0;  // pairs, without pairs of ignored objects
   std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` if the
                               // limit was reached first
   std::uint64_t neighbours = 0;   // decided candidates that are neighbours, colliding or not
@@ -158,34 +157,32 @@ struct Report {
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   std::vector<Stage> stages;
 
-  /// The floating-point environment of the calling thread, as in "rounds upward, keeps subnormals";
-  /// empty if it rounds to nearest and keeps subnormals, as the call itself always does.
+  /// The floating-point environment of the calling thread, as in "rounds upward, keeps subnormals".
+  /// Empty if that thread rounds to nearest and keeps subnormals.
   std::string callers_arithmetic;
 };
 
 struct Result {
-  std::vector<Pair> pairs;  // all that collide and are no neighbours, sorted, each once; of
-                            // different objects, or of one that is tested against itself
-  /// Colliding neighbours: triangles of one object that share a vertex position, and whose
-  /// intersection is more than the shared positions and the edge between them. Sorted; empty
-  /// without Options::neighbours.
+  std::vector<Pair> pairs;  // all colliding pairs except neighbours, sorted, each once
+  /// Colliding neighbours, sorted. Neighbours are triangles of one object that share a vertex
+  /// position. They collide if they have a common point that is neither a shared position nor on a
+  /// shared edge. Empty without Options::neighbours.
   std::vector<Pair> neighbour_pairs;
-  std::vector<Contact> contacts;            // one for each of `pairs`
-  std::vector<Contact> neighbour_contacts;  // one for each of `neighbour_pairs`; both are empty
-                                            // without Options::contacts
+  std::vector<Contact> contacts;            // one for each of `pairs`, or none
+  std::vector<Contact> neighbour_contacts;  // one for each of `neighbour_pairs`, or none
   /// False: Options::limit ended the search, so more pairs may follow the last one. No pair before
   /// the last one is missing.
   bool complete = true;
   Report report;
 };
 
-/// Finds the colliding pairs of one input; keeps nothing. Throws as Collider does.
+/// Finds the colliding pairs of one input. Throws as Collider does.
 Result collide(const Input& input, const Options& options = {});
 
-/// Finds colliding pairs repeatedly. It keeps buffers, and results about triangles that did not
-/// move, from call to call. An object serves one call at a time, from any thread. A second call at
-/// the same time, or a call of an object that was moved from, throws Error and changes nothing.
-/// Moving and destroying are not protected: no other thread may use the object then.
+/// Finds colliding pairs repeatedly. From call to call it keeps buffers, and results about
+/// triangles that did not move. Any thread may call it, but only one call may run at a time. A
+/// second call throws Error and changes nothing. So does a call after the Collider was moved from.
+/// While a Collider is moved or destroyed, no other thread may use it.
 class Collider {
  public:
   /// Throws Error naming the option that is bad.
@@ -195,12 +192,13 @@ class Collider {
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// Throws Error for input that does not satisfy Input, for input without anything to test (one
-  /// object without `self`, or fewer than two triangles), for a self_objects that does not have one
-  /// value for each object, and for ignored objects that the input does not have; Cancelled if
-  /// Options::may_go_on returns false. The object can be used again after each of these. The
-  /// calling thread may round in any direction and flush subnormals: the call sets its
-  /// floating-point environment (rounding, flushing, traps) and restores it at the end.
+  /// Throws Cancelled if Options::may_go_on returns false. Throws Error if
+  /// - the input does not satisfy Input,
+  /// - there is nothing to test: one object without `self`, or fewer than two triangles,
+  /// - self_objects is neither empty nor has one value for each object,
+  /// - an ignored object does not exist.
+  /// The Collider can be used again after an exception. find() sets the floating-point environment
+  /// of the calling thread (rounding, flushing, traps) and restores it at the end.
   Result find(const Input& input);
 
  private:

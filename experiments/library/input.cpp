@@ -26,8 +26,8 @@ bool all_finite(std::span<const double> block) {
   return bits >> 63 == 0;
 }
 
-// Converts indices; returns whether all are below `vertices`. A 64-bit number that is negative or
-// too large for 32 bits has a bit set in its upper half.
+// Converts indices. Returns true if all are at least 0 and below `vertices`. A 64-bit number that
+// is negative or too large for 32 bits has a bit set in its upper half.
 template <class Index>
 bool convert(std::span<const Index> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
@@ -41,7 +41,8 @@ bool convert(std::span<const Index> from, std::uint32_t* to, std::size_t vertice
   return bits >> 32 == 0 && most < vertices;
 }
 
-// Appends the vertices whose bits differ between blocks a and b, which begin at vertex `first`.
+// Appends the vertices whose bits differ between the blocks a and b. Each block begins at vertex
+// `first`.
 void append_moved(const double* a, const double* b, std::size_t size, std::size_t first,
                   std::vector<std::uint32_t>& out) {
   std::size_t next = out.size();
@@ -56,10 +57,10 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
   out.resize(next);
 }
 
-// Checks the copies, not the input: another thread of the caller may change the input meanwhile.
-// The old contents of `to` were checked before, so numbers that did not change need no check. A
-// vertex that is not finite becomes 0, 0, 0 and is listed in `bad`, since no triangle may use it;
-// it counts as changed in every call. change: receives the vertices that changed; may be null.
+// Copies the vertices. Checks the copies, not the input, since another thread may change the input
+// meanwhile. The old contents of `to` were checked before, so equal blocks need no check. A vertex
+// that is not finite becomes 0, 0, 0 and is listed in `bad`. change: receives the vertices that
+// changed; may be null.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change,
                    std::vector<std::uint32_t>& bad) {
   const std::size_t before = 3 * to.size();
@@ -100,7 +101,7 @@ void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
               "give finite coordinates to each vertex that a triangle uses");
 }
 
-// checked: the old indices in `to` are below `vertices`. Returns whether nothing changed.
+// Returns true if nothing changed. checked: true if the old indices in `to` are below `vertices`.
 template <class Index>
 bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool checked,
                     std::vector<std::array<std::uint32_t, 3>>& to) {
@@ -136,8 +137,8 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-// Each object must have a triangle. So labels of triangles, as in 0, 0, 1, 1, are not mistaken for
-// the first triangles of objects.
+// Throws Error if an object has no triangle. So a list of labels of triangles, as in 0, 0, 1, 1, is
+// not mistaken for a list of first triangles.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
   for (std::size_t o = 0; o < starts.size(); ++o) {
     const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];
@@ -155,7 +156,8 @@ void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles
   }
 }
 
-// Without a pair to test, an empty answer would look like a scene without collisions.
+// Throws Error if no pair can be tested: an empty answer would look like a scene without
+// collisions.
 void require_pairs(const Scene& scene) {
   if (const std::string reason = nothing_asked(scene, {}); !reason.empty())
     throw Error("object_starts", reason + ", so there is nothing to test",
@@ -163,8 +165,8 @@ void require_pairs(const Scene& scene) {
                 "against itself with self");
 }
 
-// Copies the vertices to `copies`, and all other arrays into the scene. Returns whether the scene
-// has as many vertices as before, and the same triangles and objects.
+// Copies the vertices to `copies`, and all other arrays into the scene. Returns true if the number
+// of vertices, the triangles and the objects are the same as before.
 bool copy(const Input& input, bool self, const std::vector<bool>& self_objects, TakenInput& taken,
           std::vector<Vec3>& copies, FrameChange* change, bool asked) {
   Scene& scene = taken.scene;
@@ -257,8 +259,8 @@ void require_good(std::span<const Pose> poses, std::size_t objects) {
 
 RigidMotion motion_of(const Pose& pose) { return {pose.r, pose.t}; }
 
-// Moves the vertices of objects whose pose has changed since the last call; with `all`, all
-// vertices.
+// Moves the vertices of objects whose pose has changed since the last call. If `all` is true, moves
+// all vertices.
 void move(std::span<const Pose> poses, bool all, TakenInput& taken, FrameChange* change) {
   std::vector<bool> moves(poses.size(), true);
   for (std::size_t o = 0; o < poses.size() && !all; ++o) moves[o] = poses[o] != taken.poses[o];
@@ -288,12 +290,13 @@ bool are_alone(const Input& input) {
          input.object_starts.empty();
 }
 
-// True if load_poses() takes less time than load_input(). triangles: how many are in the blocks
-// that overlap, all of which load_poses() tests. of_moved: how many are in objects in another pose.
+// True if load_poses() takes less time than load_input(). triangles: the number of triangles in
+// overlapping blocks, which load_poses() tests. of_moved: the number of triangles that moved.
 //
-// If the results of the last call are kept, load_input() tests only `of_moved` triangles. Else it
-// tests all triangles in the next call, and then only those that moved. So load_poses() loses time
-// for the triangles beyond `of_moved`. It is used until these losses add up to all triangles.
+// If the results of the last call are kept, load_input() tests only the triangles that moved. Else
+// load_input() tests all triangles once, and in later calls only the triangles that moved. So each
+// call of load_poses() loses the time of `triangles` - `of_moved` triangles. load_poses() is used
+// until these losses add up to the number of all triangles.
 bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, TakenInput& taken) {
   if (keeps_frames) return triangles < of_moved;
   const auto all = static_cast<double>(taken.scene.triangles.size());
@@ -302,7 +305,7 @@ bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, Ta
   return cost < all && taken.loss < all;
 }
 
-// Copies and moves input with poses. Returns as copy().
+// Copies input with poses and moves it. Returns the same as copy().
 bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change, bool asked) {
   const bool alone = are_alone(input);
@@ -355,7 +358,7 @@ void load_input(const Input& input, bool self, const std::vector<bool>& self_obj
     }
     if (change) change->same = same;
   } catch (...) {
-    taken = {};  // nothing unchecked stays, and the next scene counts as new
+    taken = {};  // it may hold unchecked input
     throw;
   }
 }

@@ -1,4 +1,4 @@
-// For the functions of the library: converts and checks their input, options, answers and errors.
+// Converts and checks the input, the options and the answers of the library's functions.
 #pragma once
 
 #include <atomic>
@@ -22,14 +22,15 @@ constexpr bool same(Given given, Own own) {
   return static_cast<int>(given) == static_cast<int>(own);
 }
 
-/// Runs the call in the floating-point environment of the proofs, and then restores the caller's.
+/// Runs the call in the floating-point environment that the proofs assume. Then restores the
+/// caller's environment.
 template <class Call>
 auto as_proved(const Call& call) {
   const FloatingPointGuard guard;
   return call();
 }
 
-/// Runs call(progress), and asks may_go_on as farcull.h says.
+/// Runs call(progress) in another thread, and calls may_go_on as MayGoOn in farcull.h says.
 template <class Call>
 auto watched(const MayGoOn& may_go_on, const Call& call) {
   if (!may_go_on) return call(Progress());
@@ -60,10 +61,9 @@ auto watched(const MayGoOn& may_go_on, const Call& call) {
   return std::move(*out);
 }
 
-/// Runs the call with the state of an object of the library; one call at a time, during which
-/// State::used, a std::atomic_flag, is set. Throws Error naming the object if it was moved from, or
-/// if another call uses it: one of another thread, or one of this thread that a signal handler
-/// interrupted.
+/// Runs the call with the state of a Collider or DistanceFinder. The flag State::used is set while
+/// a call runs. Throws Error naming the object if the object was moved from, or if another call
+/// uses the state.
 template <class State, class Call>
 auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
   return as_proved([&] {
@@ -83,28 +83,29 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// The input of the last call, and the poses of its objects.
 struct TakenInput {
-  Scene scene;                    // its vertices are moved by the poses, but see `stale`
+  Scene scene;                    // with vertices moved by the poses; exception: `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   // The members below are empty if the last call had no poses.
   std::vector<Vec3> unmoved;  // the vertices before the poses
   std::vector<std::uint32_t>
       object_of;  // the object of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
-  /// True: only vertices of some blocks are in these poses; the others are in older poses.
+  /// True if only the vertices of some blocks are in these poses. The other vertices are in older
+  /// poses.
   bool stale = false;
   std::optional<RigidBlocks> rigid;  // made of the unmoved vertices; null: not made yet
-  double loss = 0;                   // triangles, see pays() in input.cpp
-  /// How many more calls load_poses() leaves to load_input() without trying; how many after its
-  /// next failure, which doubles with each failure and is 1 after a success.
+  double loss = 0;                   // number of triangles; see pays() in input.cpp
+  /// skips: how many of the next calls of load_poses() return null at once. next_skips: the value
+  /// of `skips` after the next failure. It doubles with each failure and is 1 after a success.
   int skips = 0, next_skips = 1;
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 inline constexpr int kMostSkips = 32;
 
-/// Copies the input into `taken`, which holds the input of the last call, and reuses its memory.
-/// self, self_objects: as of Options. change: receives the changes since the last call; may be
-/// null. asked: a scene without anything to test is an error. Throws Error for input that does not
-/// satisfy Input; `taken` is then empty.
+/// Copies the input into `taken`, which holds the input of the last call. self, self_objects: as in
+/// Options. change: receives the changes since the last call; may be null. asked: true if a scene
+/// without anything to test is an error. Throws Error for input that does not satisfy Input;
+/// `taken` is then empty.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
@@ -115,19 +116,20 @@ struct PosesQuestion {
   unsigned threads = 0;
   bool keeps_frames = false;  // the results of the last call are kept
 };
-/// Takes input that is only poses: moves only the vertices of blocks that overlap, and returns
-/// these blocks. Null: load_input() has to take the input. That is so if the input is not only
-/// poses, if the last call had another number of poses, if poses are bad, if an object is tested
-/// against itself, if boxes do not decide, or if load_input() takes less time. After such a failure
-/// some calls return null at once (TakenInput::skips).
+/// Takes input that has only poses. Moves only the vertices of blocks that overlap, and returns
+/// these blocks. Returns null if the caller must call load_input() instead:
+/// - the input has other arrays, or the last call had another number of poses,
+/// - a pose is bad, or an object is tested against itself,
+/// - boxes do not decide, or load_input() takes less time,
+/// - an earlier call failed (TakenInput::skips).
 std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
                                         TakenInput& taken);
 
-/// Throws Error if an option asks for too many threads.
+/// Throws Error if `threads` is more than 1024.
 void require_threads(unsigned threads);
 
-/// The ignored pairs of a scene with this many objects. Throws Error if a pair names an object that
-/// the scene does not have.
+/// Returns the ignored pairs of a scene with this many objects. Throws Error if a pair names an
+/// object that the scene does not have, or one object twice.
 std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2>>& ignore,
                                    std::size_t objects);
 

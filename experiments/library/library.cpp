@@ -41,22 +41,22 @@ struct Collider::State {
   Session session;
   TakenInput taken;  // the input of the last call
   FrameChange change;
-  std::optional<BlockDecision>
-      decided;  // answer of load_poses(); null: load_input() took the input
+  std::optional<BlockDecision> decided;  // what load_poses() returned
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
   explicit State(const Options& given)
       : options(given), run(run_options(given)), session("native", given.threads, Say()) {}
 
-  // Loads the scene of a call; from the third call on, also finds what is new in it.
+  // Loads the scene of a call. From the third call on, it finds what changed since the last call.
   void take_scene(const Input& input);
-  // Finds the collisions. start: of the call. callers: the caller's floating-point environment.
+  // Finds the collisions. start: runs since the begin of the call. callers: the caller's
+  // floating-point environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
 
 void Collider::State::take_scene(const Input& input) {
-  // A single call does not remember frames, which takes memory.
+  // Remembering frames takes memory, so it begins with the second call.
   if (++calls == 2) session.remember_frames();
   const FrameMemory* const memory = session.frame_memory();
   change = {};
@@ -72,7 +72,7 @@ void Collider::State::take_scene(const Input& input) {
                          taken);
     if (decided) return;
   }
-  // If the last call did not move all vertices (stale), the changes cannot be found.
+  // If the last call did not move all vertices (`stale`), the changes cannot be found.
   const bool compares = memory && !memory->moved.waits() && !taken.stale;
   load_input(input, options.self, options.self_objects, taken, compares ? &change : nullptr);
 }

@@ -1,6 +1,6 @@
-// Sets up the contestants: methods run through the pipeline of `farcull run`, peers through their
-// own code. Runs a cold round, then the rounds that count, and compares every answer with that of
-// the first contestant. Prints the table and JSON.
+// Sets up the contestants. Methods run through the pipeline of `farcull run`, peers through their
+// own code. Runs a cold round, then the rounds that count. Compares every contestant's pairs with
+// the pairs of the first contestant. Prints the table and JSON.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,6 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kMethods = {"boxes", "far", "exact"};
 
-// Leaves out neighbours, as the peers do.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
   if (draws(method)) options.device = device;
@@ -43,7 +42,8 @@ BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::
   };
 }
 
-/// Sets up contestants. Leaves out one that cannot run; throws Error if it was asked for by name.
+/// Sets up contestants. If a contestant cannot run, leaves it out, or throws Error if the user
+/// named it.
 class ContestantList {
  public:
   explicit ContestantList(const Progress& progress) : progress_(progress) {}
@@ -75,7 +75,7 @@ class ContestantList {
 void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.methods != "all";
   const bool no_gl = is_cpu(options.device);
-  // If --device is not given, methods that draw are measured on GL only if hardware answers.
+  // Without --device, methods that draw are measured on GL only if a hardware device answers.
   const bool gl_by_name = by_name && !options.device.empty();
   const std::string gl_device = options.device.empty() ? "gl" : options.device;
   std::shared_ptr<Session> gl;  // shared by all methods on GL
@@ -118,7 +118,7 @@ struct Parts {
   std::vector<double> build, candidates, exact;
 };
 
-// The first pair, in order, that only one of two sorted lists has.
+// Returns the first pair that is in only one of two sorted lists.
 std::optional<Disagreement> compare(const Scene& scene, const std::string& first_name,
                                     const std::vector<TrianglePair>& first,
                                     const std::string& second_name,
@@ -135,7 +135,6 @@ std::optional<Disagreement> compare(const Scene& scene, const std::string& first
   return out;
 }
 
-/// Null if the method boxes was not measured.
 const BenchRow* row_of_boxes(const BenchResult& result) {
   const auto row = std::ranges::find(result.rows, "boxes", &BenchRow::name);
   return row == result.rows.end() ? nullptr : &*row;
@@ -227,7 +226,7 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
         const Stopwatch watch;
         BenchAnswer answer = c.run(scene);
         const double ms = watch.ms();
-        // Other libraries do not know which pairs of objects are ignored.
+        // Peers do not know which pairs of objects are ignored.
         remove_ignored(scene, scene.ignored, answer.pairs);
         if (round < 0) {
           BenchRow& row = result.rows.emplace_back();
@@ -237,7 +236,7 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
           row.candidate_pairs = answer.candidate_pairs;
           row.pairs = answer.pairs.size();
         }
-        // A cold run counts only if it is over the limit: then no other run follows.
+        // A cold run counts only if it took longer than the limit, since no other run follows.
         if (round >= 0 || ms > rounds.limit_ms) {
           parts[i].build.push_back(answer.build_ms);
           parts[i].candidates.push_back(answer.candidates_ms);

@@ -18,7 +18,7 @@ namespace {
 constexpr int kUsualRepeats = 3;
 constexpr double kLongMs = 10'000;
 
-// The resolutions of a method in px; only 0 for a method that does not draw.
+// Returns the resolutions of a method in px; {0} for a method that does not draw.
 std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
   if (!draws(method)) return {0};
   std::vector<int> out;
@@ -30,7 +30,7 @@ std::vector<int> resolutions_of(const CompareArguments& arguments, Method method
 
 using Words = std::vector<std::string>;
 
-// self: whether an object is tested against itself.
+// Returns the runs to compare. self: true if an object is tested against itself.
 std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
   const std::string methods =
@@ -63,8 +63,8 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   return cells;
 }
 
-// Refuses a resolution beyond the device before the first run, not after an hour of smaller ones.
-// Every OpenGL 4.3 has room for 8192 px (half of its least limit), so only more needs the device.
+// Throws Error if a resolution is too large for the device. Every device of OpenGL 4.3 has room for
+// 8192 px (half of the least limit), so the device is opened only for more.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {

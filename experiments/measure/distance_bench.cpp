@@ -1,4 +1,4 @@
-// Runs our search and the peers in turn, and compares each peer's first answer with ours.
+// Runs our search and the peers in turn. Compares the first answer of each peer with our answer.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ DistancePeer farcull_distances() {
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
   DistanceErrors out{.answers = answer.size()};
-  // With `nearest` each object has one distance, and the other object may differ.
+  // With `nearest`, each object has one distance, and a tie may have several nearest objects.
   const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {

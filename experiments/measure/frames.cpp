@@ -1,5 +1,4 @@
-// Each frame becomes a row of a table, an element of the JSON record and rows of CSV; a sink gets
-// them as soon as the frame is done.
+// Each frame becomes a row of a table, an element of the JSON record and rows of CSV.
 #include "experiments/measure/frames.h"
 
 #include <fmt/format.h>
@@ -17,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The keys of a run's record that differ between frames; the other keys hold for all frames.
-// Options of drawing differ, since boxes may leave nothing to draw in a frame.
+// Returns the keys of a run's record that may differ between frames. Options of drawing may differ,
+// since boxes may leave nothing to draw in a frame.
 std::vector<std::string> keys_of_frame() {
   std::vector<std::string> keys = split_list(
       "views,stages,pcs,object_triangles,candidate_pairs,colliding_pairs,neighbour_pairs,"
@@ -32,7 +31,8 @@ std::vector<std::string> keys_of_frame() {
 
 Json rate_json(double ms) { return json_of(per_second(ms)); }
 
-// head: the record of the first frame. This frame repeats the entries in which it differs.
+// Returns the record of a frame. head: the record of the first frame. Entries that are equal in all
+// frames are written only if they differ from `head`.
 Json frame_json(const Scene& scene, const Record& record, const Json& head, long frame,
                 double read_ms, const FrameSource& source) {
   const Json run = to_json(scene, record);
@@ -95,7 +95,7 @@ class FrameTable {
   struct Column {
     std::string name;
     std::size_t width;
-    std::string cell;  // of the row that is being made
+    std::string cell;  // text in the row that is being made
   };
 
   template <class Text>
@@ -133,7 +133,7 @@ void add_row(const Scene& scene, const Record& record, long frame, const FrameNo
   for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
 }
 
-// Each warning once, with the first frame that had it and the number of such frames.
+// Each different warning, with its first frame and the number of its frames.
 struct Warnings {
   struct Line {
     std::string text;
@@ -166,7 +166,7 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
   return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
 }
 
-// Running totals.
+// Totals over the frames so far.
 struct Totals {
   std::vector<double> ms;  // ascending
   double first_ms = 0;     // of the first frame

@@ -1,5 +1,5 @@
-// Runs the contestants in rounds and summarizes their times. The bootstrap draws from a generator
-// whose numbers the C++ standard fixes.
+// Runs the contestants in rounds and summarizes their times. The C++ standard fixes the random
+// numbers of the bootstrap.
 #include "experiments/measure/harness.h"
 
 #include <numeric>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kResamples = 10000;
 constexpr std::uint64_t kSeed = 1;
 
-// As middle(), but reorders the values. Precondition: not empty.
+// Returns middle(values) and reorders the values. Precondition: not empty.
 double middle_of(std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(n / 2);
@@ -35,7 +35,8 @@ Spread spread_of(std::vector<double> values) {
   std::vector<double> medians(kResamples), drawn(n);
   for (double& median : medians) {
     for (double& value : drawn) {
-      // std::uniform_int_distribution differs between libraries. The bias is below n / 2^32.
+      // Not std::uniform_int_distribution, which differs between libraries. The bias of this index
+      // is below n / 2^32.
       value = values[((generator() >> 32) * n) >> 32];
     }
     median = middle_of(drawn);
@@ -119,7 +120,7 @@ MeasurementContext::MeasurementContext(std::string device, Progress progress, un
 void MeasurementContext::begin_scene(const std::string& name, long frame, long frames) {
   current_ = nullptr;
   truth_.reset();
-  // Frames of one motion share the source and the lists of i-collide.
+  // Frames of one motion share the source and the lists of the method i-collide.
   if (name != name_ || frames != frames_ || frames == 0) {
     source_.reset();
     session_.sweep().forget();

@@ -1,5 +1,5 @@
-// Brings the sets of four methods into one form, counts their sizes for each object, and compares
-// them with the truth: exact arithmetic decides the pairs that trees of boxes leave.
+// Brings the sets of four methods into one form, counts their sizes, and compares the sets with the
+// exact nearest neighbours.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace farcull {
 namespace {
 
-// The squares of the least and of the largest distance between points of two boxes, both rounded.
+// The squares of the least and of the largest distance between points of two boxes, rounded.
 struct SquaredRange {
   double least = 0, largest = 0;
 };
@@ -33,21 +33,22 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// A box whose computed least squared distance is above this limit is farther away than the largest
-// distance whose square was computed as `largest`. Let u = 2^-53. A difference, a square and two
-// sums round, and a square below 2^-1022 is off by 2^-1075. So each computed square is off the
-// exact one by a factor of (1 - u)^5 to (1 + u)^5, and by 2^-1072. The factor 1 + 16 u covers this
-// for both squares, and the rounding of this product; 2^-1000 covers the rest. If a square
-// overflows, both sides are infinite, and the box is kept.
+// Returns a limit for computed squared distances. largest: the computed square of a distance D. A
+// box whose computed squared distance is above the limit is truly farther away than D. Derivation:
+// let u = 2^-53. A difference, a square and two sums round. A square below 2^-1022 has an absolute
+// error of 2^-1075. So a computed squared distance has a relative error of (1 - u)^5 to (1 + u)^5,
+// and an absolute error of 2^-1072. The factor 1 + 16 u covers the relative errors of two squared
+// distances and of this product. 2^-1000 covers the absolute errors. If a square overflows, the
+// limit is infinite, and the box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
-// An object may hold the nearest neighbour of another one if the least distance of their boxes is
-// at most the largest distance to the box of some object. The same bound, applied to the boxes of
-// triangles, chooses the triangles.
+// For an object a, let the bound be the least value, over all other objects, of the largest
+// distance between the boxes. Object b may be nearest to a if the least distance of their boxes is
+// at most this bound. The same bound chooses the triangles by their boxes.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  std::vector<double> limit(count, -1);  // below 0: the object has no other
+  std::vector<double> limit(count, -1);  // negative: there is no other object
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = 0; b < count; ++b) {
       if (a == b || boxes[a].is_empty() || boxes[b].is_empty()) continue;
@@ -101,7 +102,7 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   try {
     found = (reliable ? reliable_neighbours : voronoi_neighbours)(scene, voronoi, progress);
   } catch (const Error& error) {
-    // Options that are out of range remain an Error.
+    // An error about options is thrown again.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
     return {.objects = {}, .left_out = error.reason};
   } catch (const std::bad_alloc&) {
@@ -116,11 +117,11 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   return out;
 }
 
-// For each object, adds the number of triangles of other objects in its pairs, each counted once.
-// Pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So the
-// pairs with a in one object follow each other, and so do the pairs of one a with one object. It is
-// enough to remember, for each triangle b, the object of the last a, and for each object of b, the
-// last a.
+// For each object, counts the triangles of other objects in its pairs, each triangle once. The
+// pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So all
+// pairs with a in one object are consecutive. So are all pairs of one triangle a with one object.
+// So it is enough to remember the object of the last a for each b, and the last a for each object
+// of b.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);

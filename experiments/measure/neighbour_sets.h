@@ -1,6 +1,6 @@
-// Potential neighbour sets (PNS): for each object the objects and triangles that may hold its
-// nearest neighbour. Four methods compute such sets. Their sizes are compared, and exact distances
-// show which nearest neighbours they lose.
+// Potential neighbour sets (PNS). The set of an object has the other objects, and their triangles,
+// that may be nearest to the object. Four methods compute such sets. Their sizes are compared.
+// Exact distances show which nearest neighbours a method loses.
 #pragma once
 
 #include <array>
@@ -15,79 +15,80 @@
 
 namespace farcull {
 
-/// The objects nearest to one object, all at the same distance by exact arithmetic.
+/// The objects nearest to one object. All have the same distance by exact arithmetic.
 struct NearestObjects {
   std::vector<std::uint32_t> objects;   // ascending; empty if there is no other object
-  std::vector<TrianglePair> triangles;  // for each of `objects` the first pair at that distance
+  std::vector<TrianglePair> triangles;  // for each of `objects`, the first nearest pair
 };
 
-/// For each object: ProximityTrees (core/proximity/near_pairs.h) leave the pairs that can be
-/// nearest, and exact arithmetic decides (verify/closest.h). Precondition: the scene satisfies
-/// validate().
+/// Returns the nearest objects of each object, by exact arithmetic (verify/closest.h).
+/// Precondition: the scene satisfies validate().
 std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress = {});
 
-/// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
-/// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
-/// Voronoi diagram as published, and the form of it that loses nothing (core/voronoi/voronoi.h).
+/// boxes: one box for each object (object_boxes()).
+/// trees: trees of boxes, as in `farcull distance --pairs nearest` (core/proximity/near_pairs.h).
+/// voronoi: the discrete Voronoi diagram as published (core/voronoi/voronoi.h).
+/// voronoi_reliable: a form of this diagram that loses no nearest neighbour.
 enum class NeighbourMethod : std::uint8_t { boxes, trees, voronoi, voronoi_reliable };
 std::string to_string(NeighbourMethod method);
-/// Whether the method has a resolution: true for the two diagrams.
+/// True if the method is a Voronoi diagram, which has cells.
 bool has_cells(NeighbourMethod method);
 
 struct NeighbourOptions {
   NeighbourMethod method = NeighbourMethod::trees;
-  int resolution = 64;   // of the diagrams, in cells along the longest side of the scene
-  double widening = 1;   // of the reliable form (VoronoiOptions)
+  int resolution = 64;   // cells of a Voronoi diagram along the longest side of the scene
+  double widening = 1;   // for voronoi_reliable (VoronoiOptions)
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   std::uint64_t most_pairs = std::uint64_t{1} << 25;  // VoronoiOptions::most_pairs; 268 MB
 };
 
-/// The sets that a method leaves. Either `pairs` or `left` holds the triangles.
+/// The sets of all objects by one method. The triangles are in `pairs` or in `left`.
 struct NeighbourSets {
-  std::vector<ObjectPair> objects;  // sorted, each once: either may hold the other's nearest
-  /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
+  std::vector<ObjectPair> objects;  // pairs that may be nearest; sorted, each once
+  /// For trees and voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
   bool has_pairs = false;
   std::vector<TrianglePair> pairs = {};
-  /// boxes, voronoi: for each pair of objects, how many triangles of a and of b are left.
+  /// For boxes and voronoi: for each pair of objects (a, b), the number of triangles of a that are
+  /// left, then the number of triangles of b.
   std::vector<std::array<std::uint64_t, 2>> left = {};
-  /// Why there are no sets: the diagram would keep too many pairs, or memory ran out. Else empty.
+  /// Why there are no sets: too many pairs, or not enough memory. Empty if there are sets.
   std::string left_out = {};
 };
 
-/// The sets of a scene that satisfies validate(). Throws Error for options that are out of range.
+/// Computes the sets. Precondition: the scene satisfies validate(). Throws Error for options that
+/// are out of range.
 NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
                              const Progress& progress = {});
 
-/// The set of one object: how many other objects, and triangles of other objects.
+/// The number of objects, and of triangles, in the set of one object.
 struct SetSize {
   std::uint64_t objects = 0, triangles = 0;
 };
 /// One value per object of the scene.
 std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
 
-/// Whether the pair of objects is left, in either order.
+/// True if the pair (a, b) or (b, a) is in sets.objects.
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 
 /// Sizes of the sets, and how many nearest neighbours they miss. A nearest pair of triangles is
-/// missed if the sets do not hold it; if they hold no pairs of triangles, the pair of objects
-/// decides.
+/// missed if NeighbourSets::pairs does not hold the pair. Without such pairs, it is missed if the
+/// pair of objects is missed.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // objects whose set holds none of their nearest objects
   std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, summed over the objects
-  std::uint64_t missed_pairs = 0;    // nearest pairs that the sets do not hold
-  std::uint64_t object_pairs = 0;    // pairs of objects that are left
-  std::uint64_t triangle_pairs = 0;  // pairs of triangles that are left
-  /// How many objects, and triangles of other objects, the set of an object holds: the sum, the
-  /// median (the lower of the two in the middle if the number is even) and the largest, over the
-  /// objects with a nearest neighbour.
+  std::uint64_t missed_pairs = 0;    // nearest pairs of triangles that are missed
+  std::uint64_t object_pairs = 0;    // pairs of objects in the sets
+  std::uint64_t triangle_pairs = 0;  // pairs of triangles in the sets
+  /// Numbers of objects and of triangles in a set: sum, lower median and maximum, over the objects
+  /// with a nearest neighbour.
   std::uint64_t set_objects = 0, median_objects = 0, most_objects = 0;
   std::uint64_t set_triangles = 0, median_triangles = 0, most_triangles = 0;
   FARCULL_FIELDS(with_nearest, missed, nearest_pairs, missed_pairs, object_pairs, triangle_pairs,
                  set_objects, median_objects, most_objects, set_triangles, median_triangles,
                  most_triangles)
 };
-/// truth: nearest_objects() of the scene. Precondition: there are sets.
+/// truth: what nearest_objects() returns for the scene. Precondition: sets.left_out is empty.
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth);
 

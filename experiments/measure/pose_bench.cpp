@@ -1,5 +1,5 @@
-// Times frames in which the first object turns a little: new calls, one Collider and peers, all in
-// turn. The answers of each frame are compared with those of a new call.
+// Times frames in which the first object turns a little. New calls, one Collider and peers run in
+// turn. In each frame, the pairs are compared with the pairs of a new call.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -17,9 +17,9 @@
 namespace farcull {
 namespace {
 
-constexpr double kTurn = 0.01;  // radians a frame
+constexpr double kTurn = 0.01;  // radians per frame
 
-// A rotation about the middle of the box by `frame` times kTurn.
+// Returns a rotation about the middle of the box by the angle frame * kTurn.
 RigidMotion turned(const Box& box, int frame) {
   const Eigen::Matrix3d by =
       Eigen::AngleAxisd(frame * kTurn, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -29,7 +29,7 @@ RigidMotion turned(const Box& box, int frame) {
   return out;
 }
 
-// A scene as arrays of the library, without objects that have no triangles.
+// A scene as input of the library. Objects without triangles are left out.
 struct Arrays {
   std::vector<std::uint32_t> objects, starts;  // objects: their numbers in the scene
   Input input;
@@ -66,7 +66,7 @@ struct Contestant {
   std::vector<double> cpu_ms = {};
 };
 
-// The motions of all objects in a frame.
+// Returns the motions of all objects in a frame.
 using Frames = std::function<std::span<const RigidMotion>(int frame)>;
 
 std::vector<Contestant> ours(const Scene& scene, const PoseBenchOptions& options,

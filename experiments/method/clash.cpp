@@ -1,5 +1,5 @@
-// Groups the pairs of triangles that meet by their objects: these objects meet. Then compares boxes
-// to find the other pairs of objects of which one may contain the other, or that may be near.
+// Groups the pairs of triangles that meet by their objects, which gives the objects that meet. Then
+// compares boxes to find other pairs of objects that may be near or contained.
 #include "experiments/method/clash.h"
 
 #include <Eigen/Geometry>
@@ -58,10 +58,10 @@ class Objects {
     return facts.parts;
   }
 
-  /// Returns `contained` if a part of `inner` is inside `outer`, `clear` if none is, and `unknown`
-  /// if that is not decided, as when `outer` is not closed. Unless it is `clear`, sets `point` to a
-  /// corner of the part. Precondition: the surfaces do not meet, so one point decides about a part
-  /// (experiments/method/distances.cpp). Boxes settle most pairs: a part inside is in outer's box.
+  /// Returns `contained` if a part of `inner` is inside `outer`, `clear` if no part is inside, and
+  /// `unknown` if this is not decided, as when `outer` is not closed. Sets `point` to a corner of
+  /// the part unless the result is `clear`. Precondition: the surfaces do not meet. So one point of
+  /// a part decides (experiments/method/distances.cpp). Only points in the box of `outer` count.
   ClashVerdict containment(std::uint32_t outer, std::uint32_t inner, Vec3& point) const {
     const Object& object = scene_.objects[inner];
     bool any = false;
@@ -99,11 +99,11 @@ class Objects {
   std::vector<Box> boxes_;
 };
 
-/// Pairs of triangles, sorted by their objects, and one row for each pair of objects.
+/// The pairs of triangles that meet, sorted by their objects. One row for each pair of objects.
 struct Meetings {
   std::vector<TrianglePair> pairs;
   std::vector<ClashRow> rows;
-  std::vector<std::size_t> first;  // index of each row's first pair; then the number of pairs
+  std::vector<std::size_t> first;  // index of each row's first pair; at the end pairs.size()
 };
 
 Meetings meetings_of(const Scene& scene, std::vector<TrianglePair> pairs) {
@@ -127,7 +127,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
               std::span<const ContactShape> contacts, ClashRow& row) {
   row.pairs = pairs.size();
   std::vector<std::array<std::array<double, 3>, 2>> ends;
-  std::size_t best = 0;  // index of the pair that gives the witness: the first crossing, else 0
+  std::size_t best = 0;  // index of the pair for the witness: the first crossing pair, else 0
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const ContactShape& contact = contacts[k];
     ++row.kinds[static_cast<std::size_t>(contact.kind)];
@@ -138,8 +138,9 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
     } else {
       row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
     }
-    // Skips segments of coplanar triangles, which may be diagonals of flat faces. If such a segment
-    // is an edge of a closed part, the edge's other triangle, in another plane, has it as well.
+    // Skips segments of coplanar triangles, since they may be diagonals of flat faces. A segment on
+    // a real edge of a closed part is found with the edge's other triangle, which is in another
+    // plane.
     if (contact.dimension != 1 || contact.kind == ContactKind::coplanar) continue;
     const auto& [p, q] = contact.ends;
     ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
@@ -148,7 +149,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
   row.witness = {common.points[0], common.points[0]};
   const std::uint64_t crossing = row.kinds[static_cast<std::size_t>(ContactKind::crossing)];
   if (crossing > 0) row.verdict = ClashVerdict::clash;
-  // A part of the curve that lies on a common edge of two triangles was found twice.
+  // A segment on a common edge of two triangles was found twice.
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const auto& [p, q] : ends) {
@@ -172,10 +173,11 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
   row.proved = overlap != Overlap::unknown;
 }
 
-/// Notes likely faults of the input: objects that are copies, and objects in different units.
+/// Records likely faults of the input: copies of objects, and objects in different units.
 void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record) {
   constexpr std::size_t kMostCopies = 100;
-  constexpr double kRounding = 1e-6, kFar = 100;  // relative, for floats; ratio of sizes
+  // kRounding: relative error of rounding to floats. kFar: ratio of sizes.
+  constexpr double kRounding = 1e-6, kFar = 100;
   const std::vector<Box>& boxes = objects.boxes();
   std::vector<std::uint32_t> order;
   for (std::uint32_t o = 0; o < boxes.size(); ++o) {
@@ -202,8 +204,8 @@ void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record)
   if (size(most) >= kFar * size(least)) record.sizes = {least, most};
 }
 
-/// Directions in which a short move may separate two objects: the normals of the largest faces that
-/// meet, and sums and differences of two or three of these normals.
+/// Returns directions in which a short move may separate two objects. These are the normals of the
+/// largest faces that meet, and the sums and differences of two or three of these normals.
 std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> pairs) {
   constexpr std::size_t kMostFound = 64, kMost = 6;
   constexpr double kSame = 0.999;              // cosine of directions that count as one
@@ -223,7 +225,7 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   }
   std::ranges::stable_sort(faces, std::greater(), [](const auto& face) { return face.first; });
   faces.resize(std::min(faces.size(), kMost));
-  std::array<std::vector<Vec3>, 3> sums;  // sums[k]: of k + 1 normals
+  std::array<std::vector<Vec3>, 3> sums;  // sums[k] has sums of k + 1 normals
   for (const auto& [area, normal] : faces) {
     for (const std::size_t k : {2u, 1u}) {
       for (const Vec3& sum : std::vector<Vec3>(sums[k - 1]))
@@ -240,9 +242,9 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   return out;
 }
 
-/// Bounds the depth, if asked for. An overlap becomes a touch if the upper bound of its depth is at
-/// most the tolerance; else sets ClashRow::shallow. pairs: the triangles that meet; none for a
-/// containment. Precondition: both objects are closed.
+/// Bounds the depth if options.depth is set. If the upper bound of the depth is at most the
+/// tolerance, the verdict becomes `touch`. Else sets ClashRow::shallow. pairs: the triangles that
+/// meet; empty if one object contains the other. Precondition: each object is closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
@@ -260,9 +262,9 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
     Penetration found =
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
     if (found.hi > tolerance) {
-      // If a point of one surface is this far inside the other object, it stays inside after every
-      // translation by the tolerance. The distance is rounded, so this is no proof, but hardly
-      // wrong.
+      // A point of one surface is deep if it is farther inside the other object than the tolerance.
+      // Then no translation by the tolerance moves it out. The distance is rounded, so this is no
+      // proof.
       const auto is_deep = [&](const Vec3& p) {
         return std::ranges::any_of(std::array{&a, &b}, [&](const ClosedObject* solid) {
           return solid->has(p) && (solid->nearest(p) - p).norm() > tolerance;
@@ -272,7 +274,7 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
         const auto [p, q, r] = scene.corners(triangle);
         return std::ranges::any_of(std::array<Vec3, 4>{p, q, r, (p + q + r) / 3}, is_deep);
       };
-      constexpr std::size_t kMost = 1000;  // pairs that are looked at
+      constexpr std::size_t kMost = 1000;  // at most this many pairs are examined
       const auto some = pairs.first(std::min(pairs.size(), kMost));
       if (found.lo > tolerance || is_deep(row.witness[0]) ||
           std::ranges::any_of(some, [&](const auto& p) { return has_deep(p.a) || has_deep(p.b); }))
@@ -290,7 +292,7 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
   row.verdict = ClashVerdict::touch;
 }
 
-/// Adds a stage that began when the watch did, and restarts the watch.
+/// Adds a stage with the time of the watch, and restarts the watch.
 void add_stage(ClashRecord& record, StageKind kind, Stopwatch& watch, std::uint64_t in,
                std::uint64_t out) {
   record.trace.push_back(
@@ -302,7 +304,7 @@ bool is_asked(const ClashOptions& options, const ObjectPair& pair) {
   return !options.only || std::ranges::binary_search(*options.only, pair);
 }
 
-/// Rows for the objects that do not meet, but of which one may contain the other, or that are near.
+/// Returns rows for objects that do not meet, but are near or may be contained.
 std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
                                  const ClashOptions& options, std::span<const ClashRow> meeting,
                                  const Progress& progress, ClashRecord& record) {
@@ -360,8 +362,8 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
   return rows;
 }
 
-/// Whether x comes before y: by verdict, then deep before shallow overlaps, long before short
-/// curves, near before far objects.
+/// True if x comes before y. The order is: rows that are not ignored first, then by verdict. Equal
+/// verdicts: less distance, more depth, longer curve, lower objects first.
 bool more_serious(const ClashRow& x, const ClashRow& y) {
   if (x.ignored != y.ignored) return y.ignored;
   if (x.verdict != y.verdict) return x.verdict < y.verdict;

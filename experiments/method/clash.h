@@ -1,6 +1,6 @@
 // Finds which objects of a scene clash. The record has one row for each pair of objects that meet,
-// contain each other or are near. One run of the method `boxes` over all objects finds the pairs of
-// triangles that meet; exact tests decide the rest.
+// that are near, or of which one may contain the other. The method `boxes` finds the pairs of
+// triangles that meet. Exact tests decide the relations of the objects.
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@
 namespace farcull {
 
 /// The relation of two objects, the most serious first.
-/// clash: their surfaces pass through each other, or their insides overlap; also if they touch and
-///   it is not proved that they only touch (ClashRow::proved).
-/// contained: the surfaces do not meet, and all or a part of one object is inside the other.
-/// unknown: perhaps `contained`; the outer object is open, or neither the winding number nor rays
-///   decide what is inside it (overlap_at() in verify/overlap.h).
-/// touch: they meet, and it is proved that their insides do not.
-/// near: they do not meet, and are at most the clearance apart.
+/// clash: the surfaces cross, or the insides overlap, or the objects meet and there is no proof
+/// that
+///   they only touch (ClashRow::proved).
+/// contained: the surfaces do not meet, and a part of one object is inside the other object.
+/// unknown: perhaps `contained`, but exact tests did not decide (overlap_at() in verify/overlap.h).
+/// touch: the surfaces meet, and it is proved that the insides do not overlap.
+/// near: the objects do not meet, and their distance is at most the clearance.
 /// clear: none of these.
-/// With a tolerance, two objects also `touch` if their depth (verify/penetration.h) is proved to be
-/// at most the tolerance, or if they are at most the tolerance apart.
+/// With a tolerance, two objects `touch` in two more cases: their depth (verify/penetration.h) is
+/// proved to be at most the tolerance, or their distance is at most the tolerance.
 enum class ClashVerdict : std::uint8_t { clash, contained, unknown, touch, near, clear };
 inline constexpr std::array kClashVerdicts = {ClashVerdict::clash,   ClashVerdict::contained,
                                               ClashVerdict::unknown, ClashVerdict::touch,
@@ -37,12 +37,10 @@ std::string to_string(ClashVerdict verdict);
 
 struct ClashOptions {
   double clearance = 0;                  // world units, finite, >= 0
-  std::vector<ObjectPair> ignored = {};  // sorted by in_order(); they are examined, but are
-                                         // listed apart
-  std::optional<std::vector<ObjectPair>> only = {};  // asks only for these pairs; sorted likewise
-  double tolerance = 0;  // world units, finite, >= 0: a depth or gap up to this is a touch
-  bool depth = false;    // bounds the depth of clashes; with many triangles this takes
-                         // longer than all the rest
+  std::vector<ObjectPair> ignored = {};  // examined, but counted and listed apart; by in_order()
+  std::optional<std::vector<ObjectPair>> only = {};  // examines only these pairs; by in_order()
+  double tolerance = 0;  // world units, finite, >= 0; a depth or gap up to this is a touch
+  bool depth = false;    // bounds the depth of clashes, which is slow with many triangles
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
@@ -51,45 +49,45 @@ struct ClashRow {
   ClashVerdict verdict = ClashVerdict::clear;
   ClashVerdict exact = ClashVerdict::clear;  // the verdict with a tolerance of 0
   bool ignored = false;
-  bool proved = true;    // false: a touch was not proved to be one, so it counts as a clash
+  bool proved = true;    // false: perhaps the objects only touch, but this counts as a clash
   bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no deeper
                          // point was found, as when a part fits tightly in a slot
-  std::uint64_t pairs = 0;                                     // of triangles that meet
-  std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // how many of these, by kind
-  std::optional<std::uint32_t> inner = {};      // contained, unknown: the object inside the other
-  std::optional<SquaredDistance> squared = {};  // of the surfaces, if they do not meet and are at
-                                                // most the clearance or the tolerance apart
+  std::uint64_t pairs = 0;                                     // pairs of triangles that meet
+  std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // `pairs` by kind of contact
+  std::optional<std::uint32_t> inner = {};      // for contained and unknown: the inner object
+  std::optional<SquaredDistance> squared = {};  // squared distance of the surfaces; set only if 0 <
+                                                // distance <= max(clearance, tolerance)
   double distance = 0;                          // root of `squared`, rounded once
   Box box = Box::empty();  // box of the common points, the inner object or the two nearest points
-  /// A common point twice, a corner of the inner object twice, or two nearest points; rounded.
+  /// A common point twice, or a corner of the inner object twice, or the two nearest points.
+  /// Rounded.
   std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};
   double curve = 0;  // length of the curve in which the surfaces cross
-  std::vector<std::array<Vec3, 2>> segments = {};  // of that curve, each once; ends rounded
-  std::optional<Penetration> depth = {};   // of two closed objects that clash or contain; set if
-                                           // asked for, if within the tolerance, or if shallow
-  std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth;
-                                           // set if a depth is asked for or a tolerance is given
+  std::vector<std::array<Vec3, 2>> segments =
+      {};                                  // segments of that curve, each once; ends rounded
+  std::optional<Penetration> depth = {};   // null: not computed
+  std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth
   bool within_tolerance() const { return verdict != exact; }
 };
 
 struct ClashRecord {
   ClashOptions options;
-  std::uint64_t asked = 0;         // pairs of objects that are not ignored
-  std::uint64_t examined = 0;      // of these, pairs whose objects have triangles
-  std::uint64_t ignored = 0;       // pairs that are ignored
-  std::uint64_t ignored_meet = 0;  // of these, pairs that clash, touch or may contain each other
-  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // pairs not ignored, by verdict
-  std::uint64_t within_tolerance = 0;  // of these, pairs that touch only because of the tolerance
+  std::uint64_t asked = 0;         // pairs of objects, without ignored pairs
+  std::uint64_t examined = 0;      // pairs in `asked` where each object has triangles
+  std::uint64_t ignored = 0;       // ignored pairs
+  std::uint64_t ignored_meet = 0;  // ignored pairs with a row that is not `near`
+  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // `examined` by verdict
+  std::uint64_t within_tolerance = 0;  // pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
-  /// At most 100 pairs that may be one part twice: they have equally many triangles, and the same
-  /// box but for rounding to floats.
+  /// At most 100 pairs of objects that may be copies of one part: with the same number of
+  /// triangles, and with the same box up to rounding to floats.
   std::vector<ObjectPair> copies;
   /// The smallest and the largest object, if their sizes differ by a factor of 100 or more.
   std::optional<ObjectPair> sizes;
-  /// The rows of all verdicts but `clear` (for ignored pairs also without `near`): the most serious
-  /// first, ignored pairs last.
+  /// The rows of all verdicts except `clear`. Ignored pairs that are `near` have no row. The most
+  /// serious row is first. Ignored pairs are last.
   std::vector<ClashRow> rows;
-  std::uint64_t triangle_pairs = 0;  // that meet
+  std::uint64_t triangle_pairs = 0;  // pairs of triangles that meet
   std::vector<Stage> trace;
   double ms = 0;
 
@@ -98,12 +96,12 @@ struct ClashRecord {
   }
 };
 
-/// Examines every two objects of the scene, or options.only. Precondition: no object is tested
-/// against itself, and Scene::ignored is empty. Throws Error if the scene has fewer than two
-/// objects, or if the clearance or the tolerance is no distance.
+/// Examines every two objects of the scene, or the pairs in options.only. Precondition: no object
+/// is tested against itself, and Scene::ignored is empty. Throws Error if the scene has fewer than
+/// two objects, or if the clearance or the tolerance is negative or not finite.
 ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progress& progress = {});
 
-/// The diagonal of an object's box.
+/// Returns the diagonal of an object's box.
 double size_of(const Scene& scene, std::uint32_t object);
 
 }  // namespace farcull

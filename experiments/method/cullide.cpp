@@ -1,5 +1,6 @@
-// FAR and the CULLIDE family. Boxes find what has to be drawn. A canvas culls it view by view, with
-// one offset after the other. Then the boxes of what is left are joined.
+// FAR and the CULLIDE family. Boxes find the triangles that have to be drawn. A canvas culls these
+// triangles in each view, with one offset after the other. Then the boxes of the remaining
+// triangles are joined.
 #include <algorithm>
 #include <iterator>
 
@@ -18,12 +19,13 @@
 namespace farcull {
 namespace {
 
-// If a method is guaranteed, leaving stages out can only cost time, never lose a pair.
+// True if stages may be left out. With a guaranteed method this loses no pair.
 bool is_thrifty(const RunOptions& options) {
   return guaranteed(options) && !options.full && !options.no_shortcuts;
 }
 
-// The offsets in the order in which they are tried, each on what the previous one left.
+// Returns the offsets in the order in which they are tried. Each offset gets the triangles that the
+// previous offset left.
 std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
@@ -95,7 +97,6 @@ Stage cut(const Scene& scene, std::span<const Box> boxes, std::span<const std::u
           .ms = watch.ms()};
 }
 
-// Culls with one offset after the other. Sets the triangles that are left, views, trace and device.
 void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions& options,
                      Session& session, const Progress& progress, Candidates& out) {
   CullSettings settings = work.settings;
@@ -148,7 +149,8 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
   out.by = std::move(views);
 }
 
-// Compares boxes of objects, as published, to find which triangles take part, and in which regions.
+// Compares boxes of objects, as in the published method, to find the triangles and the regions to
+// draw.
 void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   if (!work.self && has_self(scene)) {
@@ -174,7 +176,7 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   plan.trace.push_back(stage);
 }
 
-// Finds all pairs of triangles whose boxes overlap. False: this would cull too little here.
+// Finds all pairs of triangles whose boxes overlap. Returns false if the boxes cull too little.
 bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   const Stopwatch watch;
@@ -192,8 +194,8 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.ran = true;
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
-  // At first each object is one owner. Objects that are tested against themselves are cut into
-  // patches once it is known which of their triangles are drawn.
+  // Here each object is one owner. Below, objects that are tested against themselves are cut into
+  // patches, when the triangles that are drawn are known.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
   work.regions = regions_of(scene, work.pairs->drawn);
   stage.out = work.regions.triangles.size();
@@ -224,7 +226,7 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   work.self = tests_self_alone(options.method);
   const bool objects = options.broad_phase == BroadPhase::objects;
   if (objects || !compare_boxes(scene, threads, plan, work)) {
-    plan.options.broad_phase = BroadPhase::objects;  // also if boxes of triangles would cull little
+    plan.options.broad_phase = BroadPhase::objects;
     find_places(scene, plan, work);
   }
   if (options.objects_alone && work.patches.cut) {
@@ -283,7 +285,6 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   } else if (work.patches.count > 0) {
     out.pairs =
         join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
-    // Puts back triangles that were culled by drawing, but belong to a candidate pair of one patch.
     const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
     std::vector<std::uint32_t> all;
     std::ranges::set_union(out.triangles, members, std::back_inserter(all));

@@ -1,5 +1,5 @@
-// Keeps the findings of probes in a file of lines: a checksum, the inputs, the findings.
-// The file's name is a hash of the inputs, so each build and driver has its own file.
+// Keeps the results of probes in a text file: a checksum, the inputs, the results. The file's name
+// is a hash of the inputs, so each build and driver has its own file.
 #include "experiments/method/device_verdict.h"
 
 #include <sys/stat.h>
@@ -53,8 +53,8 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
     const std::vector<SolidAnswer> answers = device_solids(context, solid, cases);
     for (std::size_t i = 0; i < kSolidCases; ++i)
       kernel.check(cases[i], answers[i], ordinary[i], tally);
-    // A step of the depth buffer is 0.25 px, or 16 px for `direct`. For most solids this is about
-    // the distance from entry to exit.
+    // A step of the depth buffer is 0.25 px, or 16 px if `direct`. For most solids the distance
+    // from entry to exit is about one step.
     std::vector<SolidCase> stored = cases;
     if (options.late_stores) std::rotate(stored.begin(), stored.begin() + 1, stored.end());
     const std::vector<std::uint8_t> seen =
@@ -97,14 +97,13 @@ std::string driver_environment() {
   return out;
 }
 
-// FNV-1a, 16 hex digits.
 std::string hash_of(const std::string& text) {
   Fnv1a hash;
   hash.add(text);
   return hash.hex();
 }
 
-// Model and features of the processor, for which a software device generates code.
+// Returns the model and the features of the processor. A software device generates code for these.
 std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   std::string line, out;
@@ -121,7 +120,6 @@ std::string processor() {
   return out.empty() ? "unknown" : out;
 }
 
-// The number with three digits, or "infinite".
 std::string number(double x) {
   if (!std::isfinite(x)) return "infinite";
   char out[32];
@@ -129,15 +127,14 @@ std::string number(double x) {
   return out;
 }
 
-// The inputs as lines of a file.
 std::string text_of(const VerdictInputs& inputs) {
   std::string out;
   for (const auto& [name, value] : inputs) out += name + ": " + value + "\n";
   return out;
 }
 
-// The file of a verdict, in $XDG_CACHE_HOME/farcull, else in $HOME/.cache/farcull; "" if neither is
-// an absolute path.
+// Returns the file of a verdict in $XDG_CACHE_HOME/farcull, or if that is no absolute path, in
+// $HOME/.cache/farcull. Returns "" if neither variable has an absolute path.
 std::string file_of(const std::string& inputs) {
   const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
   const char* const cache = std::getenv("XDG_CACHE_HOME");
@@ -147,7 +144,8 @@ std::string file_of(const std::string& inputs) {
   return folder + "/farcull/device-" + hash_of(inputs);
 }
 
-// Returns nothing if the file is missing, damaged, of another user, or about other inputs.
+// Reads the verdict. Returns nothing if the file is missing, is damaged, belongs to another user,
+// or has other inputs.
 std::optional<DeviceVerdict> read(const std::string& file, const std::string& inputs) {
   struct stat status {};
   if (file.empty() || ::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
@@ -169,7 +167,8 @@ std::optional<DeviceVerdict> read(const std::string& file, const std::string& in
   return out;
 }
 
-// Returns "" or why the file could not be written. A reader sees the old file or the new one.
+// Returns why the file could not be written; "" if it was written. A reader sees either the old
+// file or the new file, never a part.
 std::string write(const std::string& file, const std::string& text) {
   if (file.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
   const std::string beside = file + "." + std::to_string(::getpid());
@@ -311,13 +310,13 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // An older verdict is removed first, or invalidated if the folder allows no removal: so none is
-  // left that these results refute, even if a later step fails.
+  // If the new verdict does not hold, the older file is removed first, or emptied if it cannot be
+  // removed. So no refuted verdict stays, even if a later step fails.
   std::error_code error;
   if (!out.holds && !file.empty() && !fs::remove(file, error) && error)
     fs::resize_file(file, 0, error);
   if (!out.holds && out.failed.empty()) return out;
-  // The hash of the lines below it, the inputs, a line of three values, a line per failure.
+  // Line by line: the hash of all lines below it, the inputs, three values, the failures.
   std::ostringstream rest;
   rest << inputs << out.made << ' ' << out.probes << ' ' << ms << '\n';
   for (const std::string& failure : out.failed) rest << failure << '\n';

@@ -1,6 +1,6 @@
-// Decides whether a device keeps the assumptions A1 to A10, on which the guarantee of far depends
-// (docs/reliability.md), as far as probes can tell. The probes run once for a device, a driver and
-// a build of farcull; a file keeps their results.
+// Decides by probes whether a device keeps the assumptions A1 to A10 (docs/reliability.md). The
+// guarantee of far depends on these assumptions. The probes run once for each device, driver and
+// build of farcull. A file keeps the results.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace farcull {
 
-// Probes of assumption A4, on the kernels that farcull uses: each kernel runs on the device as its
-// method runs it, and its answers are compared with rational bounds (verify/kernel_check.h).
+// Probes of assumption A4. Each kernel that farcull uses runs on the device. Its answers are
+// compared with rational bounds (verify/kernel_check.h).
 
-/// A kernel of an offset: its program, functions that make its test cases (fattened triangles, and
+/// A kernel of an offset: its program, two functions that make test cases (fattened triangles, and
 /// solids with random floats), and the check of an answer.
 struct SolidKernel {
   const char* name;
@@ -27,67 +27,68 @@ struct SolidKernel {
   Solid (*adversarial)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
   void (*check)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
 };
-/// The kernels of both offsets.
+/// Returns the kernels of the two offsets.
 std::vector<SolidKernel> solid_kernels();
 
-/// The members after the first are deliberate defects, so that tests can see the probes fail.
+/// `bare` and `late_stores` are deliberate defects, with which tests check that the probes fail.
 struct KernelProbeOptions {
   std::uint64_t seed = 1;
-  bool bare = false;         // kernels that widen nothing
-  bool late_stores = false;  // stores another solid than the one it asks about
+  bool bare = false;         // the kernels widen nothing
+  bool late_stores = false;  // the probe stores a wrong solid
 };
 
-/// Probes solid_interval of both offsets. A probe fails if anything was lost, if answers are loose
-/// too often, if nothing was checked, or if it breaks off with an Error. All functions here make
-/// the context current while they run.
+/// Probes solid_interval of the two offsets. A probe fails if a solid was lost, if too many answers
+/// are loose, if nothing was checked, or if an Error is thrown. The context is current meanwhile.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
-/// Runs run_probes() and the probes of kernels, in the order of the assumptions. started: as for
-/// run_probes(). brief: run_probes() takes about a third of the samples.
+/// Runs run_probes() and the probes of kernels. Returns the results in the order of the
+/// assumptions. started: as for run_probes(). brief: run_probes() takes about a third of the
+/// samples.
 std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {},
                                     bool brief = false);
 
 // ---- the verdict ----
 
-/// The time now: UTC, ISO 8601, in seconds.
+/// Returns the current time, as in 2026-01-31T12:00:00Z.
 std::string utc_now();
 
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
-  std::string problem;              // which probe did not finish, and why; then no guarantee
-  std::string made;                 // when the probes ran, as in 2026-01-31T12:00:00Z
-  std::size_t probes = 0;           // how many ran
+  std::string problem;              // which probe did not finish, and why; empty: all finished
+  std::string made;                 // when the probes ran, as by utc_now()
+  std::size_t probes = 0;           // how many probes ran
   double ms = 0;                    // time of the probes
-  bool remembered = false;          // read from the file; no probe ran now
-  std::string file;                 // file of the verdict; empty: it is not stored
+  bool remembered = false;          // true: the verdict was read from the file
+  std::string file;                 // file of the verdict; empty: not stored in a file
   std::string note;                 // why the file could not be written
 };
 
-/// One sentence without a full stop: what the probes found.
+/// Says in one sentence, without a full stop, what the probes found.
 std::string to_string(const DeviceVerdict& verdict);
 
-/// Names and values of all that code generation and arithmetic on this device depend on: the
-/// device, its driver, threads and limits, the sources of kernels and probes, the features of the
-/// processor (for a software device), and the variables of the environment that drivers read.
+/// Names and values of everything that can change the results of probes: the device, its driver,
+/// threads and limits, the sources of kernels and probes, the processor (for a software device),
+/// and the environment variables that drivers read.
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
 VerdictInputs verdict_inputs(const GlInfo& device);
 
 /// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;
 
-/// Receives a line before probes run, and one if their verdict cannot be kept.
+/// Receives a line of text for the user.
 using Say = std::function<void(const std::string& line)>;
 
-/// Returns the kept verdict. If there is none, runs `probes` and keeps their verdict by
-/// keep_verdict(). A file that is damaged, belongs to another user, or has other inputs is ignored
-/// and written anew. Errors of the file system do not throw; what `probes` throws passes through.
+/// Returns the verdict that the file keeps. If there is no such file, runs `probes`, and keeps and
+/// returns their verdict. A file is ignored and written anew if it is damaged, belongs to another
+/// user, or has other inputs. Errors of the file system do not throw. Exceptions of `probes` pass.
+/// say: gets a line before the probes run, and a line if the verdict cannot be kept.
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say = {});
 
-/// Makes a verdict from the results of probes and keeps it in place of an older one. Keeps nothing
-/// if a probe broke off and none failed. If the verdict does not hold, first removes the older one.
+/// Makes a verdict from the results of probes. Replaces the older file of the verdict. If a probe
+/// broke off and no probe failed, only removes the older file.
 DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>& results,
                            double ms);
 

@@ -1,5 +1,5 @@
-// Distances: trees of boxes (core/proximity) find the pairs that can be nearest, or within a
-// distance; exact arithmetic decides these pairs.
+// Distances. Trees of boxes (core/proximity) find candidate pairs. Exact arithmetic decides these
+// pairs.
 #include "experiments/method/distances.h"
 
 #include <algorithm>
@@ -20,11 +20,10 @@
 
 namespace farcull {
 
-// A *part* of an object is a connected component of its triangles, joined where they share a vertex
-// position. If a part does not meet a closed mesh, either all of its points lie inside or none: a
-// path between two of them never crosses the mesh, and the winding number and the parity change
-// only at a crossing. So one vertex of each part decides. Whatever lies inside a closed mesh also
-// lies in the mesh's box, so boxes settle most pairs.
+// A *part* of an object is a connected component of its triangles. Triangles are connected if they
+// share a vertex position. Suppose that a part does not meet a closed mesh. Then a path between two
+// points of the part never crosses the mesh. The winding number and the parity change only at a
+// crossing. So all points of the part lie inside, or no point does, and one vertex decides.
 
 std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   struct Corner {
@@ -70,8 +69,8 @@ Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scen
 }
 Insides::~Insides() = default;
 
-// Whether all of `inner` lies inside `outer`. Sets not_closed if `outer` is not closed, so that
-// there is no answer.
+// True if all of `inner` lies inside `outer`. Sets not_closed if there is no answer, since `outer`
+// is not closed.
 bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_closed) const {
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
@@ -99,7 +98,7 @@ WhichInside Insides::which(std::uint32_t a, std::uint32_t b) const {
 
 namespace {
 
-// Pairs of triangles that one thread decides at a time.
+// The number of pairs of triangles that a thread decides at a time.
 constexpr std::size_t kTogether = 256;
 
 std::vector<ObjectPair> every_two_objects(const Scene& scene) {
@@ -135,7 +134,8 @@ std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> q
   return out;
 }
 
-// The nearest triangles of each pair of objects, unless they are farther apart than `within`.
+// Returns the nearest triangles of each pair of objects, except pairs farther apart than
+// options.within.
 std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> near,
                                  const DistanceOptions& options) {
   struct Part {
@@ -163,7 +163,7 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
     if (k == 0 || parts[k - 1].question != parts[k].question) {
       out.push_back(std::move(found));
     } else if (found.closest.squared < out.back().closest.squared) {
-      out.back() = std::move(found);  // at equal distance the earlier part stays
+      out.back() = std::move(found);
     }
   }
   if (std::isfinite(options.within)) {
@@ -185,7 +185,7 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   });
 }
 
-// Decides ties for the search: of many pairs that are equally near, it keeps one.
+// Decides ties for the search. If many pairs are equally near, the search keeps only out.pair.
 SettledPair settled(const Scene& scene, std::span<const TrianglePair> pairs) {
   const NearestPair nearest = *nearest_pair(scene, pairs);
   SettledPair out;
@@ -284,7 +284,8 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   Stopwatch watch;
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, options.threads);
-  // Allows a quarter more, since exact arithmetic finds some pairs to be a little too far apart.
+  // The limit is a quarter higher here, since exact arithmetic removes pairs that are too far
+  // apart.
   const std::vector<TrianglePair> near =
       trees.pairs_within(options.within, options.most_pairs, progress, options.most_pairs / 4);
   record.counts = trees.counts();
@@ -395,7 +396,7 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     if (scene.objects[o].triangle_count == 0) continue;
     std::vector<std::size_t>& of = naming[o];
-    // A stable sort: at equal distance, the order of the other object is kept.
+    // At equal distance, a stable sort keeps the order of the other objects.
     std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
       return distances[x].closest.squared < distances[y].closest.squared;
     });
@@ -454,14 +455,15 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   return out;
 }
 
-// Sorts the candidates into the order of the answer; then threads decide them in parts.
+// Sorts the candidates into the order of the answer. Then threads decide parts of the candidates.
 std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,
                                                           unsigned threads, std::size_t most,
                                                           const Progress& progress) {
   const FloatingPointGuard guard;
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, threads);
-  // Allows a quarter more, since some pairs turn out to be a little too far apart.
+  // The limit is a quarter higher here, since exact arithmetic removes pairs that are too far
+  // apart.
   std::vector<TrianglePair> near = trees.pairs_within(within, most, progress, most / 4);
   remove_ignored(scene, scene.ignored, near);
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -470,7 +472,7 @@ std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, do
   };
   if (!std::ranges::is_sorted(near, {}, in_order)) std::ranges::sort(near, {}, in_order);
   if (progress) progress(StageKind::closest);
-  constexpr std::size_t kTogether = 1024;  // pairs that a thread decides at a time
+  constexpr std::size_t kTogether = 1024;  // number of pairs that a thread decides at a time
   std::vector<std::vector<TriangleContact>> out((near.size() + kTogether - 1) / kTogether);
   for_each_shared(out.size(), threads, [&](std::size_t part) {
     const std::span<const TrianglePair> pairs = std::span(near).subspan(

@@ -1,4 +1,4 @@
-// The methods that a run can choose between, and what each can do. A method is one value of the
+// The methods that a run can use, and the abilities of each method. A method is one value of the
 // enumeration, one entry of the table in methods.cpp, and the two functions that the entry names.
 #pragma once
 
@@ -13,11 +13,11 @@
 
 namespace farcull {
 
-/// far: FAR (2004), CULLIDE's passes on fattened primitives. cullide: CULLIDE (2003).
-/// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), tests the triangles of an
-/// object against each other. i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks
-/// of triangles. exact: no culling.
-/// docs/methods.md gives the source of each method, and says where it can miss.
+/// far: FAR (2004), which draws fattened primitives in the passes of CULLIDE.
+/// cullide: CULLIDE (2003). quick_cullide: Quick-CULLIDE (2005).
+/// s_cullide: S-CULLIDE (2005), which tests the triangles of one object against each other.
+/// i_collide: sweep and prune (I-COLLIDE, 1995). boxes: boxes of blocks of triangles.
+/// exact: no culling. For sources and possible misses see docs/methods.md.
 enum class Method {
   far,
   cullide,
@@ -33,11 +33,12 @@ struct Candidates;  // record.h
 struct Plan;        // plan.h
 class Session;      // session.h
 
-/// Makes all decisions that need no pixels. Sets plan.work, trace and ahead; plan.options are set.
+/// Makes all decisions that need no pixels. Sets plan.work, plan.trace and plan.ahead.
+/// Precondition: plan.options is set.
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
-/// Runs the method: finds the candidates of the planned scene. take: if a tree of boxes finds them
-/// (Candidates::streamed), receives them as they are found; empty: they are listed.
+/// Runs the method: finds the candidates of the planned scene. take: receives candidates at once
+/// when a tree of boxes finds them (Candidates::streamed). If empty, candidates are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 
@@ -48,8 +49,8 @@ struct Traits {
   Method method;
   const char* name;  // the value of --method
   Promises promises = Promises::never;
-  bool draws = false;             // it draws on a canvas, in views at a resolution
-  bool fattens = false;           // fattens what it draws, by an offset and a radius
+  bool draws = false;             // draws on a canvas, in views at a resolution
+  bool fattens = false;           // fattens the triangles that it draws, by an offset and a radius
   bool quick = false;             // keeps visibility bits between passes
   bool culls = true;              // false: tests every pair whose boxes overlap
   bool tests_self = false;        // can test an object's triangles against each other
@@ -60,22 +61,22 @@ struct Traits {
   FindFunction* find;
 };
 
-/// The method's entry in the table.
+/// Returns the method's entry in the table.
 const Traits& traits(Method method);
 
 std::span<const Method> all_methods();
 std::string to_string(Method method);
-/// The method with this name. Throws Error naming `option` for an unknown name.
+/// Returns the method with this name. Throws Error naming `option` for an unknown name.
 Method parse_method(const std::string& name, const std::string& option = "{method}");
-/// The names of the methods for which `can` is true; without `can`, of all.
+/// Returns the names of the methods for which `can` returns true; all names if `can` is empty.
 std::vector<std::string> list_of_methods(const std::function<bool(const Traits&)>& can = {});
-/// The same in one text: "far, cullide, ... or exact".
+/// Returns these names in one text: "far, cullide, ... or exact".
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
 
 inline bool draws(Method method) { return traits(method).draws; }
 inline bool fattens(Method method) { return traits(method).fattens; }
 inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
-/// Whether a broad phase between objects decides what the method draws.
+/// True if a broad phase between objects decides what the method draws.
 inline bool has_broad_phase(Method method) { return draws(method) && !tests_self_alone(method); }
 inline bool culls(Method method) { return traits(method).culls; }
 inline bool tests_self(Method method) { return traits(method).tests_self; }

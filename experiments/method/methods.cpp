@@ -1,5 +1,4 @@
-// The table of methods, and the methods that draw nothing on a canvas; cullide.cpp has the other
-// methods.
+// The table of methods, and the methods that do not draw. cullide.cpp has the methods that draw.
 #include "experiments/method/method.h"
 
 #include <array>
@@ -128,8 +127,7 @@ std::string method_names(const std::function<bool(const Traits&)>& can) {
   return text;
 }
 
-// Exact: takes all pairs whose boxes overlap, and decides each when the join finds it. Culls
-// nothing.
+// Exact. Decides every pair of triangles whose boxes overlap, when the join finds the pair.
 
 void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back({.kind = StageKind::join,
@@ -166,8 +164,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   return out;
 }
 
-// I-collide: sweep and prune on the boxes of objects, then on the boxes of their triangles
-// (I-COLLIDE, 1995).
+// I-collide (I-COLLIDE, 1995). Sweep and prune on the boxes of objects, then on boxes of triangles.
 
 void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back(sweep_stage(scene));
@@ -186,7 +183,7 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   out.triangles = std::move(result.triangles);
   out.triangle_count = out.triangles.size();
   out.object_count = count_objects(scene, out.triangles);
-  // The triangles of the objects that are in a pair or are tested against themselves.
+  // Counts the triangles of objects that are in a pair or are tested against themselves.
   std::vector<std::uint8_t> in(scene.objects.size(), 0);
   for (const TrianglePair& pair : result.object_pairs) in[pair.a] = in[pair.b] = 1;
   std::uint64_t swept = 0;
@@ -206,7 +203,7 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   return out;
 }
 
-// Boxes (core/boxes/search.h).
+// Boxes. See core/boxes/search.h.
 
 void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
   const RunOptions& options = plan.options;
@@ -214,7 +211,7 @@ void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& 
                                {.clearance = options.clearance,
                                 .full = options.full,
                                 .neighbours = options.neighbours,
-                                // The accounting needs a list of all candidates.
+                                // The verification needs a list of all candidates.
                                 .lists = options.verify,
                                 .ignored = options.ignored},
                                threads, plan.memory, plan.decided);

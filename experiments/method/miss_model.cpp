@@ -1,7 +1,8 @@
-// In each view, the part of a triangle that another one hides is a polygon: the common part of both
-// images, on one side of the line in which the two planes have equal depths. A triangle is kept in
-// a view if a pixel centre lies in such a part. The probability of that follows from the area, the
-// width and the height of the part; a pair is missed unless both triangles are kept in each view.
+// In each view, the part of triangle A that triangle B hides is a polygon. It is the common part of
+// the images of A and B, cut at the line where their planes have equal depths. A view keeps a
+// triangle if a pixel centre lies in a hidden part of the triangle. The probability of this follows
+// from the area, the width and the height of the part. A pair is found if every view keeps each of
+// its two triangles.
 #include "experiments/method/miss_model.h"
 
 #include <algorithm>
@@ -16,13 +17,13 @@
 namespace farcull {
 namespace {
 
-constexpr std::size_t kMostParts = std::size_t{1} << 22;  // in a view; 72 bytes each
-// The most rounds in solve() if the options do not limit them. Ten mostly suffice, and some tens if
-// each culled triangle uncovers the next. The limit only ends a search that never settles.
+constexpr std::size_t kMostParts = std::size_t{1} << 22;  // largest number of parts in a view
+// The largest number of rounds in solve() if the options set no limit. Mostly ten rounds suffice.
+// Tens of rounds are needed if each culled triangle uncovers the next triangle.
 constexpr int kMostRepeats = 200;
 // Standard deviation (px) of the error of a triangle's height over its longest edge. Snapping moves
-// corners to multiples of 2^-b px, an error of variance 4^-b / 12 along each axis. The error of the
-// height has 5/3 of this variance, averaged over where the foot of the height lies.
+// corners to multiples of 2^-b px. Along each axis, the variance of this error is 4^-b / 12. The
+// variance for the height is 5/3 of this, averaged over the positions of the height's foot.
 const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
 
 struct Point2 {
@@ -96,11 +97,12 @@ Polygon hull(std::vector<Point2> of) {
   return {std::move(out)};
 }
 
-// The sizes of an image along two axes in which it is compact. Axes of whole numbers with the
-// determinant 1 map pixel centres to pixel centres. So the probability that the image holds a
-// centre is the same in all such axes, and in good ones a needle along 2:3 is a narrow strip.
-// Lagrange's reduction of the moments of the corners finds good axes. If the longer size is below
-// 1 px, the area is at most either size, so sizes no longer matter.
+// Returns the sizes of an image along two axes in which the image is compact. Axes with integer
+// components and the determinant 1 map pixel centres to pixel centres. So the probability that the
+// image contains a centre is the same in all such axes. In good axes, a needle along 2:3 is a
+// narrow strip. Lagrange's reduction of the moments of the corners finds good axes. It ends when
+// the longer size is at most 1 px: then the area is the smallest bound, and the sizes do not
+// matter.
 std::array<double, 2> compact_sizes(const Polygon& image) {
   Point2 a{1, 0}, b{0, 1};
   while (true) {
@@ -128,14 +130,14 @@ struct Image {
   Polygon polygon;  // empty: not drawn, or seen edge-on
   double area = 0;
   Range x, y, depth;
-  std::array<double, 2> compact = {};            // sizes
-  double drawn = 0;                              // probability that it holds a centre
-  double slope_x = 0, slope_y = 0, depth_0 = 0;  // of its plane
-  double slant = 0;    // px of depth that a ball of 1 px adds to the plane
+  std::array<double, 2> compact = {};            // compact_sizes()
+  double drawn = 0;                              // probability that the image contains a centre
+  double slope_x = 0, slope_y = 0, depth_0 = 0;  // depth = depth_0 + slope_x * x + slope_y * y
+  double slant = 0;    // px of depth that a ball of radius 1 px adds to the plane
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
-// E|w + s N| / w for w = width, s = kSnapped and a standard normal N.
+// Returns E|w + s N| / w for w = width, s = kSnapped and a standard normal N.
 double snapped_share(double width) {
   const double z = width / kSnapped;
   if (z > 10) return 1;
@@ -143,7 +145,8 @@ double snapped_share(double width) {
          std::erf(z / std::numbers::sqrt2);
 }
 
-// The rectangle around a flat polygon along its longest edge. It is the image of an oriented box.
+// Returns the rectangle around a flat polygon along the polygon's longest edge. It is the image of
+// an oriented box.
 std::vector<Vec3> rectangle(std::span<const Vec3> points, const Vec3& normal) {
   Vec3 along = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -200,23 +203,24 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
   return out;
 }
 
-// The part of a triangle that another one hides.
+// The part of triangle `of` that triangle `by` hides. Parts that overlap in one axis form a place
+// (find_places()).
 struct Part {
   std::uint32_t of = 0, by = 0;
-  double share = 0;  // of the image's area in the place of this part
+  double share = 0;  // area of the part / area of the image in the place
   Range x, y;
-  double place = 0;  // area of the image in the place, at its first part; else 0
-  double strip = 0, width = 0, height = 0;  // region where both hide each other: area and sides
+  double place = 0;  // area of the image in the place; 0 except in the place's first part
+  double strip = 0, width = 0, height = 0;  // area and sides where each hides the other
 };
 
 struct ViewOfParts {
-  std::vector<Image> images;         // per triangle; without polygons
-  std::vector<std::uint32_t> first;  // per triangle the index of its first part; then the end
-  std::vector<Part> parts;           // by triangle and place
-  double radius = 0;                 // px, of the ball
+  std::vector<Image> images;         // one per triangle, without polygons
+  std::vector<std::uint32_t> first;  // index of each triangle's first part; at the end parts.size()
+  std::vector<Part> parts;           // sorted by triangle, then by place
+  double radius = 0;                 // radius of the ball in px
 };
 
-// Adds the part of `back` that `front` hides, also where `front` is behind it by at most `near`.
+// Adds the part of `back` that `front` hides. `front` may be behind `back` by at most `near`.
 void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
               double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
   if (back.depth.hi + near < front.depth.lo) return;
@@ -238,7 +242,8 @@ void add_part(const Polygon& common, const Image& back, const Image& front, doub
   out.push_back(part);
 }
 
-// Groups the parts of one triangle by place: a new place begins at each gap along its longer side.
+// Groups the parts of one triangle into places. Along the longer side of the triangle's image, a
+// new place begins after each gap between parts.
 void find_places(const Image& image, std::span<Part> parts) {
   Range Part::*const side = image.x.size() > image.y.size() ? &Part::x : &Part::y;
   std::ranges::sort(parts, {}, [&](const Part& p) { return std::pair((p.*side).lo, p.by); });
@@ -254,7 +259,7 @@ void find_places(const Image& image, std::span<Part> parts) {
     place.cut(-1, 0, around.x.hi);
     place.cut(0, 1, -around.y.lo);
     place.cut(0, -1, around.y.hi);
-    double most = 0;  // of a part
+    double most = 0;  // largest area of a part
     for (std::size_t k = i; k < end; ++k) most = std::max(most, parts[k].share);
     parts[i].place = std::max(place.area() * image.snapped, most);
     for (std::size_t k = i; k < end; ++k)
@@ -262,7 +267,7 @@ void find_places(const Image& image, std::span<Part> parts) {
   }
 }
 
-// All parts in a view. False: too many.
+// Finds all parts in a view. Returns false if there are too many parts.
 bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, double radius,
                 bool box, ViewOfParts& out) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -275,7 +280,7 @@ bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, 
   }
   const auto left = [&](std::uint32_t t) { return out.images[t].x.lo; };
   std::ranges::sort(order, {}, left);
-  // Depths that round to one float are equal, and equal depths hide.
+  // Depths that round to the same float are equal, and a triangle at an equal depth hides.
   const double step = 0.5 * depth_step(window, 32);
   Polygon common;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -310,7 +315,7 @@ bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, 
   return true;
 }
 
-// The share of a pixel's square that a disc around its centre covers.
+// Returns the share of a pixel's square that a disc around the pixel's centre covers.
 double disc_share(double radius) {
   if (radius >= std::numbers::sqrt2 / 2) return 1;
   const double whole = std::numbers::pi * radius * radius;
@@ -319,7 +324,7 @@ double disc_share(double radius) {
          4 * (radius * radius * std::acos(0.5 / radius) - 0.5 * std::sqrt(radius * radius - 0.25));
 }
 
-// Solves for the probabilities that triangles are kept, which depend on each other.
+// Solves the equations for the probabilities that triangles are kept.
 class Equations {
  public:
   Equations(const Scene& scene, std::vector<ViewOfParts> views, const CullSettings& settings,
@@ -340,7 +345,7 @@ class Equations {
   void solve() {
     const bool any = settings_.clear == ClearRule::any;
     before_.assign(views_.size(), now_);
-    for (std::size_t v = 0; any && v < views_.size(); ++v) {  // the first round, view by view
+    for (std::size_t v = 0; any && v < views_.size(); ++v) {  // the first round
       before_[v] = now_;
       State next = now_;
       for_all([&](int side, std::uint32_t t) { next[side][t] *= seen(v, t, side); });
@@ -363,7 +368,7 @@ class Equations {
     before_.assign(views_.size(), now_);
   }
 
-  // The probability that a pair is found.
+  // Returns the probability that a pair is found.
   double found(TrianglePair pair) {
     if (owner_[pair.a] > owner_[pair.b]) std::swap(pair.a, pair.b);
     const auto& [a, b] = pair;
@@ -380,12 +385,13 @@ class Equations {
     }
     if (settings_.clear == ClearRule::all) each = (1 - a_cleared) * (1 - b_cleared);
     if (!settings_.quick) return each;
-    return each + (1 - each) * now_[0][a] * now_[1][b];  // other owners may keep both
+    return each + (1 - each) * now_[0][a] * now_[1][b];  // other owners may keep a and b
   }
 
  private:
-  // Per side and triangle: the probability that it is not cleared. Plain CULLIDE has one side,
-  // Quick-CULLIDE two: against earlier owners (the bit F) and against later ones (L).
+  // State[side][triangle] is the probability that the triangle is not cleared. Plain CULLIDE has
+  // one side. Quick-CULLIDE has two sides: 0 is against earlier owners (bit F), 1 is against later
+  // owners (bit L).
   using State = std::array<std::vector<double>, 2>;
 
   int sides() const { return settings_.quick ? 2 : 1; }
@@ -411,17 +417,18 @@ class Equations {
     return next;
   }
 
-  // The probability that the hiding triangle, part.by, is still stored.
+  // Returns the probability that triangle part.by is still in the depth buffer.
   double stored(const Part& part, int side) const {
     if (!settings_.quick) return now_[0][part.by];
     return (owner_[part.by] < owner_[part.of]) == (side == 0) ? now_[1 - side][part.by] : 0;
   }
 
-  // The probability that a view does not clear a triangle. surely: a triangle known to be stored.
+  // Returns the probability that a view does not clear triangle t. surely: a triangle that is in
+  // the depth buffer.
   double seen(std::size_t v, std::uint32_t t, int side, std::uint32_t surely = UINT32_MAX) const {
     const ViewOfParts& view = views_[v];
-    double none = 1;  // probability that no place holds a centre
-    double open = 0;  // the logarithm of the share of the place that nothing hides
+    double none = 1;  // probability that no place contains a pixel centre
+    double open = 0;  // logarithm of the share of the place that nothing hides
     double place = 0;
     Range x, y;
     for (std::uint32_t i = view.first[t]; i < view.first[t + 1]; ++i) {
@@ -433,7 +440,7 @@ class Equations {
       }
       const double p = part.by == surely ? 1 : stored(part, side);
       open += std::log1p(-p * part.share);
-      if (p >= 0.05) {  // a rarely stored part would add its whole extent
+      if (p >= 0.05) {  // an unlikely part must not add its extent
         x.add(part.x);
         y.add(part.y);
       }
@@ -445,8 +452,8 @@ class Equations {
     return std::min(1 - none, view.images[t].drawn);
   }
 
-  // The probability that one pixel centre keeps both triangles, since fattened ones can hide each
-  // other.
+  // Returns the probability that one pixel centre keeps a and b. Fattened triangles can hide each
+  // other, so this is possible.
   double both_seen(std::size_t v, std::uint32_t a, std::uint32_t b) const {
     const ViewOfParts& view = views_[v];
     if (!(view.radius > 0)) return 0;
@@ -462,13 +469,13 @@ class Equations {
   const CullSettings& settings_;
   const double sharpness_;
   State now_;
-  std::vector<State> before_;  // per view: the state in which the view decides
+  std::vector<State> before_;  // one per view: the state in which the view decides
 };
 
 }  // namespace
 
-// The number of missed pairs is off by a factor of up to 1.2. If nearly all pairs are missed, the
-// number of found pairs is off by a factor of up to 1.5.
+// The error of the model: the number of missed pairs is wrong by a factor of at most 1.2. If nearly
+// all pairs are missed, the number of found pairs is wrong by a factor of at most 1.5.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -480,8 +487,9 @@ double MissPrediction::high() const {
 
 double centre_probability(double area, double width, double height, double radius,
                           double sharpness) {
-  // The probability is at most the area, the width and the height. A disc inside the region holds a
-  // centre with probability `disc`; else the bounds apply to the rest of the region, over `rest`.
+  // The probability is at most the area, the width and the height. A disc in the region contains a
+  // centre with probability `disc`. Else the same bounds apply to the region without the disc, and
+  // are divided by `rest`.
   const double disc = disc_share(radius), rest = 1 - disc;
   if (rest <= 0) return 1;
   const auto term = [&](double size) { return std::pow(std::max(size / rest, 1e-12), -sharpness); };
@@ -536,8 +544,8 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
   for (const View& view : work.settings.views) {
     if (work.regions.places.empty()) break;
     const auto window = fit_window(view, work.regions.places, work.settings.resolution);
-    if (!window && work.settings.clear == ClearRule::all) return out;  // then nothing is culled
-    if (!window) continue;                                             // clears nothing
+    if (!window && work.settings.clear == ClearRule::all) return out;  // nothing is culled
+    if (!window) continue;                                             // this view clears nothing
     const int side = viewport_side(std::max(window->width, window->height));
     const double radius =
         fat ? options.radius.factor * budget_for(native_limits(32), side).radius() : 0;
@@ -554,7 +562,7 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
     out.missed += missed;
     variance += missed * (1 - missed);
   }
-  // Doubled, since pairs with a common triangle are mostly missed together.
+  // The variance is doubled, since pairs with a common triangle are mostly missed together.
   out.deviation = std::sqrt(2 * variance);
   return out;
 }

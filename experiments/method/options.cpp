@@ -1,5 +1,4 @@
-// The table of options: how each option is read, and which values it takes. Checks which options go
-// together, chooses defaults, and puts options in words.
+// The table of options. Reads and checks options, chooses defaults, and puts options in words.
 #include "experiments/method/options.h"
 
 #include <algorithm>
@@ -72,7 +71,7 @@ void copy_value(const RunOptions& from, RunOptions& to) {
   to.*Member = from.*Member;
 }
 
-// Reads "none", or sizes with commas between, each below the one before.
+// Reads "none", or a descending list of sizes with commas between.
 bool take_clusters(const std::string& text, RunOptions& options) {
   std::vector<std::uint32_t> sizes;
   for (const std::string& part : text == "none" ? std::vector<std::string>() : split_list(text)) {
@@ -353,7 +352,7 @@ const Option kOptions[] = {
     // A new option goes here.
 };
 
-// Refuses an option that the method does not have, so that no request of the user is ignored.
+// Throws Error for an option that the method does not have, so that no request is ignored.
 void refuse_idle(const RunOptions& options, const GivenOptions& given) {
   const Traits& method = traits(options.method);
   for (const Option& option : run_options()) {
@@ -382,7 +381,7 @@ const Option& run_option(std::string_view name) {
 
 std::string option_word(const std::string& name) {
   if (name == "doctor" || name == "run") return "farcull " + name;  // two commands
-  // Messages also name these options, which only single commands have.
+  // These options belong to single commands.
   static constexpr std::string_view kOthers[] = {"certificate", "compare", "inside", "no_verify",
                                                  "pairs",       "repeat",  "within"};
   if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&
@@ -480,8 +479,8 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 QueryMode query_of(const RunOptions& options) {
-  // Methods that test only an object against itself draw one step for each triangle, and flags
-  // would wait for every step.
+  // Methods that test only an object against itself draw one step for each triangle. Flags would
+  // have to wait for every step.
   const bool steps = tests_self_alone(options.method);
   const bool flags = options.depth_format == DepthFormat::float32 && !steps;
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);

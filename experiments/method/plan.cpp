@@ -1,4 +1,4 @@
-// The method plans its own part; the exact tests and the accounting are the same for all.
+// Each method plans the search for candidates. The exact tests and the accounting are planned here.
 #include "experiments/method/plan.h"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// The record of a run: what was asked and planned, what each stage found, and how long each took.
+// The record of a run: its options and plan, and the results and times of its stages.
 #pragma once
 
 #include <algorithm>
@@ -25,50 +25,50 @@ namespace farcull {
 
 // ---- what a method finds: pairs of triangles that may collide ----
 
-/// The device that answered.
+/// The device on which a method drew.
 struct UsedDevice {
-  std::optional<GlInfo> gl;  // the GL device; empty: none, or the cores of the CPU
-  bool cpu = false;          // the cores of the CPU answered
-  std::string lanes = {};    // the instruction set of the native canvas; empty for others
+  std::optional<GlInfo> gl;  // the GL device; empty if no GL device was used
+  bool cpu = false;          // true: the cores of the CPU were used
+  std::string lanes = {};    // the CPU's instruction set; empty for a GL device
   int depth_bits = 0;        // of the canvas
-  std::string note;          // why this device; empty: none was used
+  std::string note;          // why this device was used; empty if no device was used
   bool relies = false;       // the guarantee depends on the GL device
 };
 
-/// For sweep and prune: the number of triangles of the objects that are left after comparing boxes
-/// of objects. This is the result of I-COLLIDE as published.
+/// The result of I-COLLIDE as published: how many triangles are in objects that remain after the
+/// boxes of objects were compared.
 struct SweptObjects {
   std::uint64_t triangles = 0;
 };
 
 struct Candidates {
   std::vector<TrianglePair> pairs;  // sorted; empty if streamed
-  bool streamed = false;            // pairs were decided as they were found, and not listed
-  std::uint64_t count = 0;          // of candidate pairs
-  std::uint64_t ignored = 0;        // candidates of ignored objects, which were removed
-  /// The potentially colliding set, ascending. For boxes run() fills it from the pairs. Empty for a
-  /// method that culls nothing, since it keeps all triangles.
+  bool streamed = false;            // true: each pair was decided when it was found, and not listed
+  std::uint64_t count = 0;          // number of candidate pairs
+  std::uint64_t ignored = 0;        // number of removed candidates of ignored objects
+  /// The triangles of the potentially colliding set, ascending. For `boxes`, run() sets this from
+  /// the pairs. Empty for a method that culls nothing.
   std::vector<std::uint32_t> triangles;
-  std::uint64_t triangle_count = 0;  // of the potentially colliding set
-  std::uint64_t object_count = 0;
-  std::optional<Collisions> decided;  // the answers, if streamed
-  /// The views of a drawing method, or the objects of a sweep.
+  std::uint64_t triangle_count = 0;   // triangles of the potentially colliding set
+  std::uint64_t object_count = 0;     // objects of the potentially colliding set
+  std::optional<Collisions> decided;  // the answers, if `streamed`
+  /// The views of a drawing method, or the result of a sweep.
   std::variant<std::monostate, std::vector<ViewReport>, SweptObjects> by;
-  std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
+  std::vector<std::uint8_t> bits;  // CullResult::bits of a drawing method, one per triangle
   UsedDevice device;
   CanvasWork asked;  // work of the GL device in drawing; all 0 for other methods
   std::vector<Stage> trace;
-  double setup_ms = 0;    // context, shaders; 0 if an earlier run had made them
-  double ms = 0;          // of finding, without setup
-  double decided_ms = 0;  // of deciding, if streamed; not part of ms
+  double setup_ms = 0;    // time for the context and shaders
+  double ms = 0;          // time of finding, without setup_ms and decided_ms
+  double decided_ms = 0;  // time of deciding, if `streamed`
 
-  /// The views in `by`; empty if it holds another kind.
+  /// Returns the views in `by`; empty if `by` has no views.
   const std::vector<ViewReport>& views() const {
     static const std::vector<ViewReport> none;
     const auto* views = std::get_if<std::vector<ViewReport>>(&by);
     return views ? *views : none;
   }
-  /// True if a drawing method drew. It does not if boxes left nothing or no view is resolvable.
+  /// True if a method drew. False if boxes left no triangle, or if no view is resolvable.
   bool drew() const { return std::ranges::any_of(views(), &ViewReport::drawn); }
   std::optional<std::uint64_t> swept_triangles() const {
     const auto* swept = std::get_if<SweptObjects>(&by);
@@ -79,25 +79,25 @@ struct Candidates {
 // ---- the record ----
 
 struct RunTimes {
-  double setup = 0;     // context, shaders; 0 if an earlier run of the process had made them
-  double cull = 0;      // plan, fattening, passes, box join of the kept triangles
+  double setup = 0;     // making the context and shaders
+  double cull = 0;      // planning and finding the candidates
   double exact = 0;     // exact predicates on the candidates
-  double total = 0;     // setup, cull and exact together
+  double total = 0;     // setup + cull + exact
   double contacts = 0;  // kinds of contact
   FARCULL_FIELDS(setup, cull, exact, total, contacts)
 };
 
 /// Whether a miss would break a guarantee.
 struct Promise {
-  /// The method is guaranteed(), and its device keeps the assumptions that the guarantee needs.
+  /// True if the method is guaranteed() and its device keeps the assumptions of the guarantee.
   bool holds = false;
-  std::string reason;                    // why, or why not
-  std::optional<DeviceVerdict> verdict;  // of that device; empty if the guarantee needs no device
+  std::string reason;                    // why the guarantee holds or does not hold
+  std::optional<DeviceVerdict> verdict;  // empty if the guarantee depends on no device
 };
 
-/// How many colliding pairs FAR loses in the same scene, views and pixels: with 0.9 of the budget
-/// radius (at_risk), and with radius 0 (at_risk_bare). If both are 0, a run without misses says
-/// nothing about the radius.
+/// How many colliding pairs FAR loses with a smaller radius, in the same scene, views and pixels.
+/// at_risk: with 0.9 of the budget radius. at_risk_bare: with radius 0. If the two numbers are 0,
+/// the scene does not show that the radius is needed.
 struct PairsAtRisk {
   std::uint64_t at_risk = 0, at_risk_bare = 0;
 };
@@ -112,19 +112,18 @@ struct Record {
   Candidates found;
   Collisions collisions;
   std::uint64_t decided = 0;  // candidates that exact predicates decided
-  bool complete = true;       // false: the limit was reached, so candidates are undecided, or
-                              // colliding pairs after the last one listed are left out
-  bool limited = false;       // the limit ended the search, so nothing accounts for the pairs
-  /// Of collisions.pairs and collisions.neighbour_pairs, if contacts are asked for; only the kinds,
-  /// unless segments are asked for.
+  bool complete = true;       // false: RunOptions::limit was reached, so pairs may be left out
+  bool limited = false;       // true: the limit ended the search, so nothing was verified
+  /// The contacts of collisions.pairs and of collisions.neighbour_pairs. RunOptions::contacts says
+  /// how much detail they have.
   std::vector<ContactShape> contacts, neighbour_contacts;
   std::optional<Accounting> verification;  // with at most kExamples examples
-  /// How many missed pairs touch, and how many penetrate; set with a verification and without a
-  /// clearance.
+  /// How many missed pairs touch, and how many penetrate. Set if there is a verification and the
+  /// clearance is 0.
   std::optional<ContactCounts> missed;
-  std::optional<PairsAtRisk> risk;  // if pairs_at_risk() was asked
+  std::optional<PairsAtRisk> risk;
   RunTimes ms;
-  FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
+  FloatingPoint callers, used;  // floating-point environments of the caller and of this run
 };
 
 constexpr std::size_t kExamples = 10;  // missed pairs that a record names

@@ -18,8 +18,7 @@
 namespace farcull {
 namespace {
 
-// Decides candidates as they are found, in the threads that find them. marks: marks their
-// triangles.
+// Decides each candidate in the thread that found it. marks: records the triangles of candidates.
 class StreamingDecider {
  public:
   StreamingDecider(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
@@ -51,7 +50,7 @@ class StreamingDecider {
     ms_ += watch.ms();
   }
 
-  // Moves the answers to `found`, and subtracts the time of deciding from the stage of finding.
+  // Moves the answers to `found`. Subtracts the time of deciding from the stage of finding.
   void finish(Candidates& found) {
     const Stopwatch watch;
     if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
@@ -75,17 +74,17 @@ class StreamingDecider {
   const IgnoredObjects is_ignored_;
   ExactQuestion question_;
   const unsigned all_threads_;
-  std::vector<std::uint8_t> kept_;  // per triangle; empty: none is marked
+  std::vector<std::uint8_t> kept_;  // 1 for a triangle of a candidate; empty if `marks` is false
   std::mutex mutex_;                // guards all members below
   GatheredPairs pairs_, neighbour_pairs_;
   Collisions counts_;  // without pairs until the end
   std::uint64_t ignored_ = 0;
   std::set<std::thread::id> threads_;
-  double ms_ = 0;  // of all threads together
+  double ms_ = 0;  // time of deciding, summed over the threads
 };
 
-// True if a tree over all boxes finds the candidates and they are more than kMostListed. A run with
-// a limit then does not list them. (Blocks are used only where triangles overlap few others.)
+// True if a tree of all boxes would find more than kMostListed candidates. A run with a limit does
+// not list so many candidates.
 bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& question,
                 unsigned threads) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
@@ -109,8 +108,8 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
   return listed > kMostListed;
 }
 
-// Searches in the order of pairs until options.limit pairs collide. If hardly any collide, as for
-// points in one place, stops after kMostSearched candidates and 16 more for each pair of the limit.
+// Searches in the order of pairs until options.limit pairs collide. The search ends after
+// kMostSearched + 16 * limit candidates, since it may be that hardly any candidate collides.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;
@@ -146,7 +145,7 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
                           .unit = Unit::pairs});
 }
 
-// Plans and finds. The plan's memory is freed on return, for the next stages.
+// Plans and finds. Frees the memory of the plan before the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
                 const ExactQuestion& question, const RunUse& use, Record& record) {
   const Stopwatch comparing;
@@ -173,10 +172,10 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   record.ms.cull = compared_ms + planned.ms + record.found.ms;
 }
 
-// Decides the candidates, or takes the answers if they were decided as they were found.
+// Decides the candidates. If they were decided when they were found, takes these answers.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   const ExactQuestion& question, bool keeps_frames, Record& record) {
-  if (record.limited) return;  // decided in the search
+  if (record.limited) return;  // search_first() has decided
   const RunOptions& options = record.options;
   Stage stage{.kind = StageKind::exact,
               .depends = !options.full && culls(options.method),
@@ -215,7 +214,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     memory->moved.notify(mostly_unmoved(memory->moved, record.found.pairs));
 }
 
-// If the options ask for it, accounts for every pair that was not left to the exact tests.
+// If options.verify is set, accounts for every pair that the exact tests did not decide.
 void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
   Stage stage{.kind = StageKind::verify,
               .reason = record.limited ? Reason::limited : Reason::not_asked,
@@ -241,8 +240,8 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
-// The guarantee of the method on the device that it used, by the session's verdict about the
-// device. After an exception the session has forgotten its device, as after find().
+// Returns the guarantee of the method on the device that it used. After an exception the session
+// has forgotten its device.
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
   Promise promise;
   promise.holds = guaranteed(options);
@@ -260,7 +259,6 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
   return promise;
 }
 
-// One contact for each pair. contacts: kinds or segments.
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
                                       ContactDetail contacts, unsigned threads) {
   if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
@@ -269,7 +267,6 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
   return out;
 }
 
-// Finds the kinds of contact, if the options ask for them.
 void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   const ContactDetail asked = record.options.contacts;
   if (asked == ContactDetail::none) return;
@@ -325,7 +322,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     use.filter(found.pairs);
     found.count = found.pairs.size();
   }
-  // If the method returns only pairs, their triangles are counted here.
+  // If the method returns only pairs, the triangles of the pairs are counted here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
   if (only_pairs && !use.answer_only) {
     found.triangles = members_of(found.pairs, scene.triangles.size());
@@ -335,8 +332,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   decide_stage(scene, session, progress, question, !use.decided, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
-  // A method that culls nothing has decided all pairs, also those beyond the limit. For other
-  // methods decide() has kept the limit.
+  // A method that culls nothing has decided all pairs, without the limit. For other methods
+  // decide() has kept the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // code of a driver may have changed this thread's settings

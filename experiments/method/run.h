@@ -1,5 +1,5 @@
-// The one pipeline, from a scene to a record: plan(), find(), then exact tests, accounting and
-// kinds of contact. Command line, library, benchmark, tiles, studies and pictures call run().
+// The pipeline from a scene to a record: plan(), find(), exact tests, accounting and kinds of
+// contact. The command line, the library, benchmarks, tiles, studies and pictures call run().
 #pragma once
 
 #include <cstdint>
@@ -15,73 +15,70 @@
 
 namespace farcull {
 
-/// Runs the method: finds the candidates of the planned scene, without those of ignored objects.
-/// question: candidates from a tree of boxes are decided as they are found, so that memory does not
-/// grow with their number; null: all are listed, except by a method that culls nothing. marks: if
-/// false, triangles of candidates that are not listed are left out. Throws Error for any fault of
-/// the device. After any exception the session has forgotten its device, and can be used again.
+/// Runs the method: finds the candidates of the planned scene, without pairs of ignored objects.
+/// question: if not null, each candidate from a tree of boxes is decided when it is found, and not
+/// listed, so that memory does not grow. marks: if false, Candidates::triangles lacks the triangles
+/// of candidates that are not listed. Throws Error for any fault of the device. After an exception
+/// the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
                 bool marks = true);
 
-/// How a caller of run() uses it, besides the options of the user.
+/// How a caller uses run(). The user's options are in RunOptions.
 struct RunUse {
-  /// Removes candidates that are left to other runs (tiles). Called before the exact tests, but
-  /// after the accounting, which needs all candidates. Empty: none is removed.
+  /// Removes candidates that other runs decide (tiles). May be empty. Called after the accounting,
+  /// which needs all candidates, and before the exact tests.
   std::function<void(std::vector<TrianglePair>&)> filter = {};
   std::string scene_hash = {};  // scene_hash() of the scene, if the caller knows it
-  /// True: the record has only the pairs, their contacts, counts, times and stages. It has no hash
-  /// and no degenerate triangles of the scene, no accounting, no Promise, and no triangles of
-  /// candidates.
+  /// True: the record has only the pairs, their contacts, counts, times and stages.
   bool answer_only = false;
-  /// What is new since the last run of the session, if the caller knows; null: the scenes are
-  /// compared. Used only if the session remembers frames.
+  /// The changes of the scene since the last run of the session. If null, the scenes are compared.
+  /// Used only if the session remembers frames.
   const FrameChange* change = nullptr;
-  /// For `boxes`: the blocks that overlap, by decide_by_motions(), if the caller knows them. Then
-  /// only vertices of these blocks are read, and the session neither uses nor keeps frames.
+  /// Only for `boxes`: the overlapping blocks that decide_by_motions() found; may be null. With
+  /// these, only vertices of these blocks are read, and the session uses no memory of frames.
   const BlockDecision* decided = nullptr;
-  bool decide_neighbours = true;  // false: neighbours are counted, as if the options left them out
+  bool decide_neighbours = true;  // false: neighbours are counted, but not decided
 };
 
-/// Plans, finds, decides and, if the options ask for it, accounts for every pair. Throws Error as
+/// Plans, finds and decides. If RunOptions::verify is set, accounts for every pair. Throws Error as
 /// plan() and find() do.
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
-/// Runs FAR twice more, with smaller balls and without accounting. This takes up to five times the
-/// cull time of the record, since no view may be left out without a guarantee. Empty unless the
-/// record is of `far` with a guarantee, drew, and accounts for all pairs.
+/// Runs FAR two more times, with smaller radii. This takes up to five times the cull time of the
+/// record, since without a guarantee no view is left out. Returns nothing unless the record is of
+/// `far` with a guarantee, `far` drew, and the record accounts for all pairs.
 std::optional<PairsAtRisk> pairs_at_risk(const Scene& scene, const Record& record, Session& session,
                                          const Progress& progress = {});
 
-/// Decides candidates by exact predicates: all of them, or until `limit` of them collide (if > 0).
+/// Decides candidates by exact predicates. If limit > 0, stops when `limit` candidates collide.
 FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
                        const ExactQuestion& question, std::uint64_t limit);
 
-/// How many of the colliding pairs, neighbours included, have each kind of contact; all kinds in
-/// their order.
+/// Counts the colliding pairs, neighbours included, of each kind of contact. Returns all kinds in
+/// order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// The pairs that were left to the exact tests, sorted. If they were not listed, since they were
-/// decided as they were found: only the colliding pairs, neighbours included, so that every other
-/// pair has to be accounted for.
+/// Returns the pairs that the exact tests got, sorted. If these pairs were not listed
+/// (Candidates::streamed), returns only the colliding pairs, neighbours included. Then all other
+/// pairs have to be accounted for.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
-/// True if the record breaks a guarantee: a method that guarantees to miss no pair missed one.
-/// strict: no method may miss a pair (`farcull verify`). Ignores the verdict about the
-/// device.
+/// True if a method with a guarantee missed a pair. strict: true if any method missed a pair
+/// (`farcull verify`). Ignores the verdict about the device.
 bool broken(const Record& record, bool strict);
 
-// One rule for program, library and Python: it is an error if nothing is tested, since an answer of
-// 0 pairs would be taken for a scene without collisions.
+// It is an error if no pair is tested, since an answer of 0 pairs would look like a scene without
+// collisions.
 
-/// Throws Error about the argument `where` if so many different pairs of objects are ignored that
-/// none is left, and no object is tested against itself. The remedy is to ignore fewer pairs, or
-/// what `otherwise` says.
+/// Throws Error about the argument `where` if all pairs of objects are ignored, and no object is
+/// tested against itself. ignored: the number of different ignored pairs. otherwise: a remedy
+/// besides ignoring fewer pairs.
 void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
                    const std::string& where, const std::string& otherwise);
 
-/// The same for a scene: the pairs in scene.ignored count as well.
+/// The same for a scene. The pairs in scene.ignored are ignored, too.
 void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
                    const std::string& otherwise);
 

@@ -1,4 +1,4 @@
-// Contexts, canvases and devices are opened on demand.
+// Opens devices, contexts and canvases when they are needed.
 #include "experiments/method/session.h"
 
 #include <cstdio>
@@ -33,7 +33,7 @@ const CanvasDevice& Session::canvas_device() {
   return *canvas_device_;
 }
 
-// Chooses GL or the CPU. If no device was named and GL fails, the CPU is taken.
+// Chooses GL or the CPU. If no device was named and GL fails, chooses the CPU.
 CanvasDevice Session::choose_device() {
   const std::string named = spelled("{device} ") + device_;
   if (is_cpu(device_)) return {true, named};

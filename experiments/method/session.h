@@ -19,51 +19,50 @@
 
 namespace farcull {
 
-/// Writes the line on standard error; a line of progress is cleared first.
+/// Returns a function that clears the line of progress and writes a line on standard error.
 Say say_on_stderr();
 
 /// Which canvas draws, and why.
 struct CanvasDevice {
-  bool native = false;  // on the cores of the CPU (core/native/canvas.h); else on a GL device
+  bool native = false;  // true: the cores of the CPU (core/native/canvas.h); false: a GL device
   std::string reason;
 };
 
-/// Each part is made when first needed, and kept from run to run. Not to be used by two threads at
-/// once.
+/// Makes each part when a run first needs it, and keeps it for later runs. Two threads must not use
+/// a Session at once.
 class Session {
  public:
   /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers and
-  /// keeps the assumptions; else the cores of the CPU are used, since a software renderer would use
-  /// the same cores more slowly. threads: of the CPU; 0: as many as there are cores. say: receives
-  /// a line if the device is probed, as in device_verdict(); may be empty.
+  /// keeps the assumptions, else the cores of the CPU. threads: CPU threads; 0: as many as there
+  /// are cores. say: as in device_verdict(); may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
-  /// The number of threads; if it was given as 0, the number of cores.
+  /// Returns the number of threads. If it was given as 0, returns the number of cores.
   unsigned cpu_threads() const {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
   const GlContext& context();
-  /// Whether the context's device keeps the assumptions; probes the device if no verdict is kept.
-  /// Does not restore the GL state.
+  /// Says whether the device of context() keeps the assumptions. Probes the device if no file keeps
+  /// a verdict. Does not restore the GL state.
   const DeviceVerdict& verdict();
-  /// The device on which canvases draw: the cores of the CPU, or the GL device of context().
+  /// Returns the device on which canvases draw.
   const CanvasDevice& canvas_device();
-  /// The canvas for the drawables of this fattener. There is one for each name of a fattener and
-  /// each set of options. Only GL has query modes.
+  /// Returns the canvas for this fattener and these options, which is made once. Only GL has query
+  /// modes.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
-  /// The largest resolution of the session's canvases, in px.
+  /// Returns the largest resolution of canvases in px.
   int max_resolution();
-  /// From now on runs are frames of a scene, one after the other: boxes and the exact tests
-  /// reuse their results about triangles that did not move. Answers stay the same.
+  /// From now on, runs are consecutive frames of a scene. Boxes and the exact tests then reuse
+  /// results about triangles that did not move. Answers stay the same.
   void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
-  /// Null if frames are not remembered.
+  /// Returns null if remember_frames() was not called.
   FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
-  /// Drops the canvases and the context, since the contents of a device are unknown after a
-  /// failure. Also drops the results of the last frame. Each is made again when it is next needed.
+  /// Drops the canvases, the context and the results of the last frame. Call this after a failure,
+  /// since the contents of a device are then unknown.
   void forget_device();
 
  private:

@@ -1,10 +1,10 @@
-// Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, over boxes that are made here.
-// Bullet's test of two triangles rounds, so it is not used: the leaves are candidates.
+// Bullet's tree of boxes (btGImpactBvh of GImpact) in double. The boxes are made here. Pairs of
+// leaves are candidates. Bullet's test of two triangles is not used, since it rounds.
 //
-// Bullet's find_collision() is not called: it stores all pairs, has one thread, and compares
-// rounded centres and extents with a tolerance, so it can lose small boxes that touch far from the
-// origin. Instead search_trees() visits the nodes with btAABB::has_collision(), which does not
-// round. The quantized tree is not used: it rounds boxes inward as well as outward.
+// Bullet's find_collision() is not called, since it stores all pairs and has one thread. It also
+// compares rounded centres and extents with a tolerance, so it can lose small boxes that touch far
+// from the origin. Instead search_trees() compares nodes with btAABB::has_collision(), which does
+// not round. Bullet's quantized tree is not used, since it may round boxes inward.
 #include <BulletCollision/Gimpact/btGImpactBvh.h>
 
 #include <type_traits>

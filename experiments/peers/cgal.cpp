@@ -1,7 +1,6 @@
 // CGAL, in two ways.
 // - Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software for box
-//   intersections, 2002) and AABB_tree. CGAL only compares boxes; the candidates are decided as for
-//   all peers.
+//   intersections, 2002) and AABB_tree. CGAL only compares boxes and gives candidates.
 // - Distances, by AABB_tree.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -86,7 +85,6 @@ BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
   return candidates.finish();
 }
 
-/// The boxes of an object that meet a region.
 std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const Box& region) {
   std::vector<PeerBox> inside;
   for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
@@ -96,10 +94,10 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
   return inside;
 }
 
-/// For each pair of objects, and each `self` object with itself, joins the boxes of the triangles
-/// that meet the common part of the objects' boxes.
+/// Joins boxes of triangles for each pair of objects, and for each `self` object with itself. Only
+/// boxes that meet the common part of the objects' boxes are joined.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
-  // With one pair of objects only the decisions can be divided over threads.
+  // With one pair of objects, only the decisions can be divided over threads.
   const bool parallel = threads > 1 && raw.objects.size() > 2;
   PeerCandidates candidates(raw, threads, parallel);
   const PeerScene scene(raw);
@@ -158,8 +156,9 @@ struct Walk {
   }
 };
 
-/// If two objects are tested against each other (PeerScene::two_sides), searches a tree of the
-/// smaller one for each triangle of the other; else a tree of all triangles for each triangle.
+/// Searches a tree for each triangle. If only two objects are tested against each other
+/// (PeerScene::two_sides), the tree has the smaller object, and the triangles of the larger object
+/// are searched. Else the tree has all triangles, and each triangle is searched.
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
@@ -189,7 +188,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
     Walk<decltype(found)> walk{found};
     tree->traversal(box, walk);
   };
-  constexpr std::size_t kBlock = 256;  // triangles that a thread takes at once
+  constexpr std::size_t kBlock = 256;  // number of triangles that a thread takes at a time
   if (tree) {
     for_each_shared((count + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
       for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
@@ -199,9 +198,9 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   return candidates.finish(build_ms);
 }
 
-// Distances: the triangles of one object against the AABB_tree of another. The tree's own functions
-// measure only from a point. So the tree's traversal is called with a triangle and the least
-// distance so far, and leaves out nodes whose boxes are farther away.
+// Distances between the triangles of one object and the AABB_tree of another object. CGAL's
+// distance functions of a tree take only a point. So the tree's traversal is called here with a
+// triangle and the least distance so far. It leaves out nodes whose boxes are farther away.
 
 double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
   double sum = 0;
@@ -244,13 +243,13 @@ struct TreeOfObject {
   Tree tree;
 };
 
-/// The square of the distance if it is below `most`; else `most`.
+/// Returns the squared distance of a and b if it is below `most`, else `most`.
 double squared_distance_of(const TreeOfObject& a, const TreeOfObject& b, double most) {
   if (squared_gap(a.box, b.box) >= most) return most;
   const TreeOfObject& asked = a.triangles.size() < b.triangles.size() ? a : b;
   const TreeOfObject& tree = &asked == &a ? b : a;
   double least = most;
-  // A first bound: the distance from one corner, by the tree's own function.
+  // The distance of one corner from the tree is a first bound.
   const double first = tree.tree.squared_distance(asked.triangles.front()[0]);
   if (first < least) least = std::nextafter(first, HUGE_VAL);
   for (const Triangle& triangle : asked.triangles) {
@@ -283,12 +282,12 @@ std::vector<std::unique_ptr<TreeOfObject>> trees_of(const Scene& scene, unsigned
   return out;
 }
 
-/// For each tree, the nearest other one. `most`: the largest squared distance that counts.
+/// Returns the nearest other tree of each tree. most: larger squared distances do not count.
 std::vector<PeerDistance> nearest(const std::vector<std::unique_ptr<TreeOfObject>>& trees,
                                   double most, unsigned threads) {
   std::vector<PeerDistance> out(trees.size());
   for_each_shared(trees.size(), threads, [&](std::size_t i) {
-    std::vector<std::pair<double, std::size_t>> others;  // by gap, so that near objects come first
+    std::vector<std::pair<double, std::size_t>> others;  // squared gap of the boxes, index
     for (std::size_t k = 0; k < trees.size(); ++k) {
       if (k != i) others.emplace_back(squared_gap(trees[i]->box, trees[k]->box), k);
     }

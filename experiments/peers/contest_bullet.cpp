@@ -1,11 +1,11 @@
-// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(), which uses Bullet's trees of
-// boxes and its test of two triangles. The file is compiled twice, for Bullet in float and in
-// double.
+// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(). It uses Bullet's trees of boxes
+// and Bullet's test of two triangles. This file is compiled twice, for Bullet in float and for
+// Bullet in double.
 //
-// Contacts are a list of points, each with the two triangles that touch there. Bullet adds a margin
-// to every shape, so it reports triangles that are apart. Bullet is asked twice: with its default
-// margin, as its manual advises, and with a margin of 0. The manual advises against 0, but only
-// this margin could distinguish triangles that meet from those that do not.
+// Bullet reports a list of contact points, each with two triangles. Bullet adds a margin to every
+// shape, so it reports triangles that are apart. There are two contestants: with the default
+// margin, as Bullet's manual advises, and with a margin of 0. The manual advises against 0, but
+// only with 0 can Bullet distinguish triangles that meet from triangles that are apart.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
@@ -55,7 +55,7 @@ class Body {
   std::unique_ptr<btCollisionObject> object_;
 };
 
-/// Notes the triangles of each contact.
+/// Records the triangles of each contact.
 struct Contacts : btCollisionWorld::ContactResultCallback {
   const btCollisionObject* first = nullptr;
   std::vector<std::pair<int, int>> pairs;
@@ -73,8 +73,8 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
 class World {
  public:
   World() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
-    // registerAlgorithm() serves only the steps of a simulation; contactPairTest() looks the
-    // algorithm up in another table.
+    // registerAlgorithm() is enough for the steps of a simulation. contactPairTest() needs the
+    // second call.
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE,
                                                 &create_);
@@ -113,8 +113,7 @@ std::vector<TrianglePair> meshes(const Scene& scene, bool with_margin) {
   return out;
 }
 
-/// margin: how far apart triangles may be and still be reported, in units; 0: no shape has a
-/// margin.
+/// margin: in units; triangles at most this far apart are reported. 0: no shape has a margin.
 Contestant contestant(const std::string& name, double margin) {
   ContestantCard card =
       crossing_card(name + kType, "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
@@ -130,7 +129,7 @@ Contestant contestant(const std::string& name, double margin) {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  // 0.08: there are two shapes, and by the manual each has a margin of 0.04.
+  // By the manual, a shape has a margin of 0.04. Two shapes have 0.08 together.
   return contest(argc, argv,
                  {contestant("bullet-gimpact-", 0), contestant("bullet-gimpact-margin-", 0.08)});
 }

@@ -1,9 +1,9 @@
-// CGAL's test of two triangles, with the kernel whose predicates are exact and with plain doubles.
-// Also CGAL's self-intersections of a mesh, intersections of meshes, tree of boxes, and side of a
-// mesh on which a point is.
+// Functions of CGAL as contestants: the test of two triangles (with exact predicates, and with
+// plain doubles), self-intersections of a mesh, intersections of meshes, the tree of boxes, and the
+// side of a mesh on which a point is.
 //
-// CGAL's checks are on here, by undefining NDEBUG: a broken precondition then gives an error, not
-// an answer.
+// NDEBUG is undefined, so CGAL's checks are on: a broken precondition gives an error, not an
+// answer.
 #undef NDEBUG
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -57,7 +57,7 @@ void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
     throw Refusal("Surface_mesh holds no mesh that is not manifold");
 }
 
-/// One mesh that holds all objects; face i is triangle i.
+/// Returns one mesh that has all objects. Face i is triangle i.
 Mesh mesh_of(const Scene& scene) {
   Mesh mesh;
   std::vector<Mesh::Vertex_index> at;
@@ -66,7 +66,7 @@ Mesh mesh_of(const Scene& scene) {
   return mesh;
 }
 
-/// The self-intersections of all objects as one mesh.
+/// Returns the self-intersections of one mesh that has all objects.
 std::vector<TrianglePair> self_scene(const Scene& scene) {
   const Mesh mesh = mesh_of(scene);
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;

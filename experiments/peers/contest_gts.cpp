@@ -1,5 +1,5 @@
-// GTS: the faces of one surface that intersect, by gts_surface_foreach_intersecting_face(). Common
-// edges and vertices of faces do not count. GTS has no other public test of two triangles.
+// GTS finds the faces of one surface that intersect, by gts_surface_foreach_intersecting_face().
+// Common edges and vertices of faces do not count. GTS has no other public test of two triangles.
 #include <gts.h>
 
 #include <unordered_map>
@@ -9,7 +9,7 @@
 namespace farcull {
 namespace {
 
-/// One surface that holds all objects.
+/// One surface that has all objects.
 class Surface {
  public:
   explicit Surface(std::size_t vertices)
@@ -36,7 +36,8 @@ class Surface {
   }
 
  private:
-  /// Makes a vertex only with its first face, since the surface destroys only vertices of faces.
+  /// Returns vertex v. Makes it when its first face is made, since GTS destroys only vertices of
+  /// faces.
   GtsVertex* vertex(const Scene& scene, std::uint32_t v) {
     const Vec3& p = scene.vertices[v];
     if (vertices_[v] == nullptr)
@@ -55,7 +56,7 @@ class Surface {
 
   GtsSurface* surface_;
   std::vector<GtsVertex*> vertices_;
-  std::unordered_map<void*, std::uint32_t> number_;  // the triangle of each face
+  std::unordered_map<void*, std::uint32_t> number_;  // the number of each face's triangle
   std::vector<TrianglePair> found_;
 };
 

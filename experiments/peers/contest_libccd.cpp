@@ -1,5 +1,5 @@
-// libccd's tests of convex bodies, GJK and MPR, on triangles as the hulls of their corners. FCL
-// calls libccd for shapes.
+// libccd's tests of convex bodies, GJK and MPR. A triangle is passed as the convex hull of its
+// corners.
 #include <ccd/ccd.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 // Libraries of npm as contestants (docs/ask.md has the protocol): three-mesh-bvh, rapier, cannon-es,
-// manifold and Jolt. Each is a function that imports its library and returns its card and its answers.
+// manifold and Jolt. A contestant is a function. It imports the library, and returns a card and the
+// functions that answer.
 'use strict';
 
 const fs = require('fs');
@@ -21,8 +22,8 @@ function readObj(file) {
 }
 
 // ---- three-mesh-bvh ----
-// It computes in double. A geometry of three.js holds the vertices of a mesh in float by default,
-// but also takes a Float64Array, which is used here.
+// It computes in double. By default, a geometry of three.js has vertices in float. Here it gets a
+// Float64Array instead.
 
 async function threeMeshBvh() {
   const three = await import('three'), bvh = await import('three-mesh-bvh');
@@ -36,8 +37,8 @@ async function threeMeshBvh() {
     return out;
   }
 
-  // The tree reorders triangles. With `indirect` it leaves the geometry as it is, and says which
-  // triangle is at each place of its order.
+  // The tree sorts the triangles in its own order. With `indirect`, it does not change the geometry,
+  // and tells the number of the triangle at each place of this order.
   function tree(file) {
     const { vertices, triangles } = readObj(file);
     const geometry = new three.BufferGeometry();
@@ -101,8 +102,8 @@ async function rapier() {
 }
 
 // ---- cannon-es ----
-// Its narrow phase of convex bodies, with each triangle as a body of two opposite faces. Its own
-// triangle meshes collide with spheres and planes alone.
+// Its narrow phase of convex bodies is used. Each triangle is a body of two opposite faces. The
+// library's triangle meshes collide only with spheres and planes.
 
 async function cannon() {
   const cannon = await import('cannon-es');
@@ -116,7 +117,7 @@ async function cannon() {
 }
 
 // ---- manifold ----
-// Whole solids: their intersection is empty or not. A mesh that is no manifold is refused by status().
+// It tests whether the intersection of two solids is empty. status() refuses a mesh that is no manifold.
 
 async function manifold() {
   const { default: Module } = await import('manifold-3d');
@@ -136,7 +137,7 @@ async function manifold() {
 }
 
 // ---- Jolt ----
-// Its JavaScript has no shape of one triangle, and no function of two meshes.
+// The JavaScript version has no shape of one triangle, and no function that tests two meshes.
 
 async function jolt() {
   const { default: init } = await import('jolt-physics');
@@ -171,7 +172,7 @@ async function jolt() {
 const kContestants = { 'three-mesh-bvh': threeMeshBvh, rapier3d: rapier, 'cannon-es': cannon, 'manifold-3d': manifold,
   'jolt-physics': jolt };
 
-// The lines of an answer, without the number of the question.
+// Returns the lines of an answer, without the number of the question.
 function answer(question, fields, contestant) {
   if (question === 'card') {
     const answers = ['pair', 'mesh', 'distance', 'inside', 'clash'].filter((word) => word in contestant);

@@ -1,4 +1,4 @@
-// Open3D: its test of two triangles, and the self-intersections of one mesh that holds all objects.
+// Open3D's test of two triangles, and its self-intersections of one mesh that has all objects.
 #include <open3d/Open3DConfig.h>
 #include <open3d/geometry/IntersectionTest.h>
 #include <open3d/geometry/TriangleMesh.h>

@@ -1,6 +1,6 @@
-// farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
-// names, else on the cores of the CPU. Methods run as by `farcull run`, except that boxes is run by
-// the library (Collider::find()).
+// farcull's own methods as contestants. The environment variable FARCULL_CONTEST_DEVICE names the
+// device; without it the cores of the CPU are used. Methods run as by `farcull run`. Exception:
+// Collider::find() of the library runs `boxes`.
 #include <algorithm>
 #include <map>
 
@@ -20,9 +20,9 @@ std::string device() {
   return named != nullptr && *named != '\0' ? named : "native";
 }
 
-/// Pairs of triangles of one object that have a vertex position in common, but no vertex index;
-/// sorted. farcull calls them neighbours, and reports them only if they share more than that. A
-/// suite compares indices, so in a suite they are two triangles that touch.
+/// Returns the pairs of triangles of one object that share a vertex position, but no vertex index.
+/// Sorted. For farcull such triangles are neighbours, which it reports only if they share more than
+/// that position. A suite compares indices, so for a suite they are two triangles that touch.
 std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> at;
   for (const Object& object : scene.objects) {
@@ -51,13 +51,13 @@ std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   return out;
 }
 
-/// The pairs that a method reports, as a suite counts them: with touching_strangers().
+/// Returns the pairs that a method reports, and touching_strangers(), which a suite counts.
 std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
   static Session session(device(), 1, {});
   if (draws(options.method)) options.device = device();
   options.verify = false;
-  // Probing a software renderer takes longer than an answer may, except for the first answer. So
-  // these two triangles are drawn before it, even if boxes alone decide the first question.
+  // Probing a software renderer takes longer than the time limit of an answer, except for the first
+  // answer. So two triangles are drawn here, before the first answer.
   [[maybe_unused]] static const Record probed =
       run(scene_of({.shared = {},
                     .a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
@@ -70,7 +70,7 @@ std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
     const auto is_kept = [&](std::uint32_t t) {
       return std::binary_search(kept.begin(), kept.end(), t);
     };
-    // If a method culls triangles, it has to keep both; other methods keep no set of triangles.
+    // A method that draws has to keep each triangle of the pair. Other methods have no set `kept`.
     if (!draws(options.method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
   }
   return out;
@@ -116,7 +116,8 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
                     [options](const Scene& scene) { return pairs_by(options, scene); });
 }
 
-/// Control for "far misses none": far with a smaller radius, which must miss some pairs.
+/// Returns a control for the result that far misses no pair: far with a smaller radius, which must
+/// miss pairs.
 Contestant far_at(const std::string& radius) {
   Contestant out =
       of_method(Method::far, "a control, which has to miss pairs", "nothing", parse_radius(radius));
@@ -125,7 +126,7 @@ Contestant far_at(const std::string& radius) {
   return out;
 }
 
-/// Whether the insides of two objects overlap, as `farcull clash` decides it.
+/// True if the insides of two objects overlap, as `farcull clash` decides it.
 bool clash_of(const Scene& scene) {
   const ClashRecord record = clashes(scene, {.threads = 1});
   if (record.rows.empty()) return false;
@@ -135,7 +136,7 @@ bool clash_of(const Scene& scene) {
   return row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
 }
 
-/// The method `exact`, and the exact tests that `farcull distance` and `farcull clash` use.
+/// Returns the method `exact`, with the exact tests of `farcull distance` and `farcull clash`.
 Contestant exact() {
   Contestant out = of_method(Method::exact, "every pair whose boxes meet is decided exactly",
                              "the answer to compare with");

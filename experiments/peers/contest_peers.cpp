@@ -1,5 +1,4 @@
-// FCL and ODE with their own tests of two triangles, as contestants, and the distances of FCL and
-// CGAL.
+// Contestants: FCL and ODE with their own tests of two triangles, and distances by FCL and CGAL.
 #include <algorithm>
 
 #include "experiments/peers/contestant.h"
@@ -23,8 +22,8 @@ Contestant narrow(const Peer& peer) {
           .mesh = pairs};
 }
 
-/// The distance that a library gives for two triangles, each of them an object. It gives no
-/// points.
+/// Returns a function that gives a library's distance of two triangles, without points. Each
+/// triangle is an object.
 std::function<ContestDistance(const SuitePair&)> distance_by(const DistancePeer& peer) {
   return [peer](const SuitePair& pair) {
     const Scene scene = two_objects(pair);

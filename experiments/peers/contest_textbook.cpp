@@ -1,6 +1,6 @@
-// The tests of two triangles that textbooks have, written here from the papers, in float and in
-// double. Many programs use these tests, so they are the baseline of the study. All compute in T
-// with rounding, and round their input to T.
+// Textbook tests of two triangles, written from the papers. Many programs use these tests, so they
+// are the baseline of the study. T is float or double: each test rounds its input to T and computes
+// in T.
 //   T. Moeller: A Fast Triangle-Triangle Intersection Test. Journal of Graphics Tools 2(2), 1997.
 //   P. Guigue, O. Devillers: Fast and Robust Triangle-Triangle Overlap Test Using Orientation
 //   Predicates. Journal of Graphics Tools 8(1), 2003.
@@ -44,7 +44,6 @@ Corners<T> rounded_to(const std::array<Vec3, 3>& triangle) {
   return out;
 }
 
-/// The axis along which a vector is longest.
 template <class T>
 int longest_axis(const Point<T>& v) {
   const T x = std::abs(v[0]), y = std::abs(v[1]), z = std::abs(v[2]);
@@ -56,7 +55,7 @@ T orientation(const std::array<T, 2>& a, const std::array<T, 2>& b, const std::a
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// Whether all of b lies strictly beyond an edge of a.
+/// True if all of b lies strictly outside one edge of a.
 template <class T>
 bool separated_by_edge(const Flat<T>& a, const Flat<T>& b) {
   for (int i = 0; i < 3; ++i) {
@@ -71,7 +70,7 @@ bool separated_by_edge(const Flat<T>& a, const Flat<T>& b) {
   return false;
 }
 
-/// Whether two triangles in a plane with the normal n overlap; drops the longest coordinate of n.
+/// True if two triangles in a plane with the normal n overlap. Drops the longest coordinate of n.
 template <class T>
 bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& b) {
   const int drop = longest_axis(n);
@@ -84,19 +83,19 @@ bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& 
   return !separated_by_edge(first, second) && !separated_by_edge(second, first);
 }
 
-/// Signed distances from the plane through `of` with the normal n, scaled by the length of n.
+/// Returns signed distances of points from the plane through `of` with the normal n, times |n|.
 template <class T>
 std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corners<T>& points) {
   const T d = -dot(n, of[0]);
   return {dot(n, points[0]) + d, dot(n, points[1]) + d, dot(n, points[2]) + d};
 }
 
-/// The part of the common line of both planes that lies in a triangle. p: the corners along the
-/// line; d: their distances from the other plane. Precondition: not all of d are above 0, not all
-/// below 0, not all 0.
+/// Returns the part of a line that lies in a triangle. The line is common to the planes of two
+/// triangles. p: coordinates of the corners along the line. d: distances of the corners from the
+/// other plane. Precondition: the three numbers d do not have the same sign, and are not all 0.
 template <class T>
 std::array<T, 2> interval(const std::array<T, 3>& p, const std::array<T, 3>& d) {
-  // The corner that is alone on its side.
+  // Finds the corner that is alone on its side of the other plane.
   int alone = 0;
   if (d[0] * d[1] > 0) {
     alone = 2;
@@ -139,22 +138,23 @@ bool moeller(const SuitePair& pair, T epsilon) {
   const std::array<T, 3> da = snapped(distances(n2, b, a));
   if (one_strict_sign(da)) return false;
   if (all_zero(da) || all_zero(db)) return coplanar_overlap(n1, a, b);
-  // Projects the common line of both planes on the axis along which it is longest.
+  // Projects the common line of the two planes on the axis along which the line is longest.
   const int axis = longest_axis(cross(n1, n2));
   const std::array<T, 2> first = interval<T>({a[0][axis], a[1][axis], a[2][axis]}, da);
   const std::array<T, 2> second = interval<T>({b[0][axis], b[1][axis], b[2][axis]}, db);
   return !(first[1] < second[0] || second[1] < first[0]);
 }
 
-/// The side of the plane through a, b and c on which d lies: a determinant, whose sign counts.
+/// Returns a determinant. Its sign is the side of the plane through a, b and c on which d lies.
 template <class T>
 T side(const Point<T>& a, const Point<T>& b, const Point<T>& c, const Point<T>& d) {
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// The lone corner: alone on its side of the other plane. negative: that side is the negative one.
-/// If one corner is on the plane and the other two are on one side, the lone corner is the one on
-/// the plane, and negative: the other two are on the positive side.
+/// The lone corner of a triangle, which is alone on its side of the other plane. negative: true if
+/// this side is the negative side. Special case: one corner is on the plane, and the two other
+/// corners are on one side. Then the corner on the plane is the lone corner, and `negative` is true
+/// if the two other corners are on the positive side.
 struct Alone {
   int corner = 0;
   bool negative = false;
@@ -166,14 +166,14 @@ Alone alone_of(const std::array<T, 3>& s) {
     if (s[i] > 0 && q <= 0 && r <= 0) return {i, false};
     if (s[i] < 0 && q >= 0 && r >= 0) return {i, true};
   }
-  // One corner is on the plane and the two others on one side.
+  // One corner is on the plane, and the two other corners are on one side.
   for (int i = 0; i < 3; ++i) {
     if (s[i] == 0) return {i, s[(i + 1) % 3] > 0};
   }
   return {};
 }
 
-/// The triangle with its lone corner first, in the same orientation.
+/// Returns the triangle with this corner first, in the same orientation.
 template <class T>
 Corners<T> begun_at(const Corners<T>& t, int corner) {
   return {t[corner], t[(corner + 1) % 3], t[(corner + 2) % 3]};
@@ -194,14 +194,14 @@ bool guigue_devillers(const SuitePair& pair) {
   const Alone in_a = alone_of(of_a), in_b = alone_of(of_b);
   a = begun_at(a, in_a.corner);
   b = begun_at(b, in_b.corner);
-  // Turns each triangle so that the lone corner of the other one is on its positive side.
+  // Orients each triangle so that the other triangle's lone corner is on the positive side.
   if (in_a.negative) std::swap(b[1], b[2]);
   if (in_b.negative) std::swap(a[1], a[2]);
   // True if the intervals on the common line overlap.
   return side(a[0], a[1], b[0], b[1]) <= 0 && side(a[0], a[2], b[2], b[0]) <= 0;
 }
 
-/// Whether a segment meets a triangle in a point, by Moeller and Trumbore. False if the segment is
+/// True if a segment meets a triangle in a point, by Moeller and Trumbore. False if the segment is
 /// parallel to the triangle.
 template <class T>
 bool edge_meets_face(const Point<T>& from, const Point<T>& to, const Corners<T>& face) {

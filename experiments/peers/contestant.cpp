@@ -1,6 +1,6 @@
 // The loop of a contestant's program (docs/ask.md): reads questions, times the library, writes
-// answers. Standard output is kept for the answers: text that a library prints there goes to
-// standard error.
+// answers. Only answers go to standard output. Text that a library prints there is sent to standard
+// error.
 #include "experiments/peers/contestant.h"
 
 #include <fmt/format.h>
@@ -53,7 +53,7 @@ SuitePair read_pair(const Fields& fields) {
   return out;
 }
 
-/// Loads the OBJ files that the fields from `first` to before `end` name, each as an object.
+/// Loads the OBJ files that fields[first] to fields[end - 1] name. Each file is an object.
 Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool self) {
   if (fields.size() < std::max(first + 1, end)) throw NoQuestion(fields[1] + " lacks fields");
   Scene out;
@@ -71,8 +71,7 @@ Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool 
   return out;
 }
 
-/// Writes the whole text at once, so that the answer is there even if the next question ends the
-/// program.
+/// Writes the text at once, so that it is not lost if the next question ends the program.
 void write_answer(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
@@ -85,7 +84,7 @@ std::string nanoseconds(const Stopwatch& since) {
   return std::to_string(std::llround(1e6 * since.ms()));
 }
 
-/// The answer to a question of yes or no, with the time that it took.
+/// Returns the answer to a question of yes or no, and the time that the answer took.
 template <class Ask>
 std::string verdict(const std::string& begin, const Ask& ask) {
   const Stopwatch watch;
@@ -157,7 +156,7 @@ constexpr std::array kQuestions = {
     Question{"inside", has<&Contestant::inside>, answer_inside},
     Question{"clash", has<&Contestant::clash>, answer_clash}};
 
-/// A line KEY TAB VALUE for each member of the card that has a value.
+/// Returns a line KEY TAB VALUE for each member of the card that has a value.
 std::string answer_card(const Contestant& contestant, const std::string& begin) {
   const ContestantCard& card = contestant.card;
   std::string answers, out;
@@ -185,7 +184,6 @@ std::string answer_card(const Contestant& contestant, const std::string& begin) 
   return out + begin + "done\n";
 }
 
-/// The answer, or a refusal if the library throws.
 std::string answer_line(const Contestant& contestant, const std::string& line) {
   const Fields fields = split_list(line, '\t');
   if (fields.size() < 2) throw NoQuestion("'" + line + "' is no question");

@@ -1,10 +1,10 @@
-// A contestant is a library, called as its documentation says, in a program that reads questions as
-// text and answers them. docs/ask.md has the protocol; this is the side that answers, in C++.
-// `PROGRAM NAME` is the contestant NAME of the program.
+// A contestant is a library that answers questions in a program of its own. The program reads
+// questions as text and calls the library as the library's documentation says. docs/ask.md has the
+// protocol. This file has the side that answers. `PROGRAM NAME` runs the contestant NAME.
 //
-// Each library has its own program, and is not called by farcull, for three reasons. A library may
-// crash, hang or take all memory. Libraries may not be linked together: Bullet exists in float and
-// in double under the same names. And a program in any language can take part.
+// farcull does not call the libraries itself, for three reasons. A library may crash, hang or take
+// all memory. Some libraries cannot be linked together: Bullet in float and Bullet in double have
+// the same names. A program in any language can take part.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ namespace farcull {
 /// Which pairs of triangles a library calls colliding, according to its documentation.
 enum class Means : std::uint8_t {
   closed,    // closed triangles: touching counts
-  crossing,  // triangles that cross; for touching and coplanar ones both answers are right
+  crossing,  // triangles that cross; for touching or coplanar triangles any answer is right
 };
 
 struct ContestantCard {
@@ -26,17 +26,18 @@ struct ContestantCard {
   std::string library = {};  // name and version, such as "CGAL 5.5.1"
   Means means = Means::closed;
   bool degenerate = true;   // the library takes triangles that are segments or points
-  bool neighbours = false;  // can be told which corners two triangles share, and ignores these
-  double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
+  bool neighbours = false;  // the library ignores corners that two triangles share
+  double margin = 0;        // units; triangles at most this far apart may count as colliding
   bool guaranteed = false;  // only for farcull's methods: a miss breaks the guarantee
   // For libraries of the study these texts are in experiments/report/chapters/libraries.csv.
   std::string call = {};    // the function that is called, and its arguments
-  std::string says = {};    // what its documentation says of exactness and of touching
-  std::string source = {};  // where the documentation says so; may be empty
-  std::string use = {};     // for which purpose it is the right choice
+  std::string says = {};    // what the documentation says about exactness and touching
+  std::string source = {};  // where the documentation says this; may be empty
+  std::string use = {};     // for which purpose the library is the right choice
 };
 
-/// The card of a library that promises only pairs that cross, and takes no degenerate triangles.
+/// Returns the card of a library that promises only pairs that cross, and takes no degenerate
+/// triangles.
 ContestantCard crossing_card(const std::string& name, const std::string& library);
 
 /// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
@@ -45,7 +46,7 @@ struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The distance of two triangles, and a point of each at that distance if the library gives one.
+/// The distance of two triangles, and the two nearest points if the library gives them.
 struct ContestDistance {
   double distance = 0;
   std::optional<std::array<Vec3, 2>> points = {};
@@ -53,37 +54,38 @@ struct ContestDistance {
 
 struct Contestant {
   ContestantCard card;
-  // The questions that it answers: the functions that are not null.
+  // A function that is not null answers a kind of question.
   std::function<bool(const SuitePair&)> pair = {};
-  /// The pairs of triangles of the scene that the library calls colliding, in any order. Either all
-  /// objects are tested against themselves too, or none. A triangle with itself is no pair.
+  /// Returns the pairs of triangles that the library calls colliding, in any order. In a scene,
+  /// either all objects are tested against themselves, or no object is. A triangle with itself is
+  /// no pair.
   std::function<std::vector<TrianglePair>(const Scene&)> mesh = {};
   std::function<ContestDistance(const SuitePair&)> distance = {};
-  // The other questions. The scene has: for `self` one object, which is tested against itself; for
-  // `inside` one closed object; for `clash` two closed objects.
+  // For `self`, the scene has one object, which is tested against itself. For `inside`, the scene
+  // has one closed object. For `clash`, the scene has two closed objects.
   std::function<bool(const Scene&)> self = {};
   std::function<bool(const Scene&, const Vec3&)> inside = {};
   std::function<bool(const Scene&)> clash = {};
 };
 
-/// main() of a program of contestants: the protocol of docs/ask.md. Any exception of a library is a
-/// refusal, except std::bad_alloc, which ends the program. The exit status is 0; 2 for a wrong call
-/// or a line that is not a question; 3 if memory ran out.
+/// The main() of a contestants' program, with the protocol of docs/ask.md. An exception of a
+/// library becomes a refusal. Exception: std::bad_alloc ends the program. Returns the exit status.
+/// 0: no error. 2: a wrong call, or a line that is no question. 3: memory ran out.
 int contest(int argc, char** argv, const std::vector<Contestant>& contestants);
 
-/// Calls `ask` for every pair of objects, and with a == b for each object that is tested against
-/// itself. For libraries that test two meshes.
+/// Calls `ask` for every pair of objects. For an object that is tested against itself, calls `ask`
+/// with a == b.
 void for_each_object_pair(const Scene& scene,
                           const std::function<void(const Object& a, const Object& b)>& ask);
 
-/// For libraries that search all objects as one: removes pairs of a triangle with itself, and pairs
-/// of an object that is not tested against itself.
+/// Removes pairs of a triangle with itself, and pairs of an object that is not tested against
+/// itself. For libraries that search all objects as one mesh.
 void leave_out_untested(const Scene& scene, std::vector<TrianglePair>& pairs);
 
-/// Two triangles as two objects.
+/// Returns a scene with the two triangles as two objects.
 Scene two_objects(const SuitePair& pair);
-/// The same, but if the triangles share corners, as one object that is tested against itself, so
-/// that they are neighbours.
+/// If the triangles share corners, returns a scene with one object that is tested against itself,
+/// so that the triangles are neighbours. Else returns two_objects(pair).
 Scene scene_of(const SuitePair& pair);
 
 }  // namespace farcull

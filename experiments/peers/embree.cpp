@@ -1,5 +1,5 @@
-// Embree: rtcCollide as a broad phase, on hierarchies of user geometries, whose boxes in float are
-// rounded outward.
+// Embree's rtcCollide as a broad phase. It searches hierarchies of user geometries. Their boxes are
+// in float, and are rounded outward.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ void require_no_error(RTCDevice device) {
   throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
 }
 
-/// Why Embree cannot take the scene; empty if it can. Embree silently leaves out geometry with a
-/// coordinate of 1.844e18 or more.
+/// Says why Embree cannot take the scene. Empty if it can. Embree silently leaves out geometry with
+/// a coordinate of 1.844e18 or more.
 std::string refuses_large(const Scene& scene) {
   for (const Vec3& p : scene.vertices) {
     if (p.cwiseAbs().maxCoeff() > 1e18) return "Embree leaves out coordinates beyond 1e18";
@@ -29,9 +29,8 @@ std::string refuses_large(const Scene& scene) {
   return "";
 }
 
-// For |x| < 2^127, these functions move x outward by at least an ulp of f, the nearest float. That
-// is more than x was rounded by. For subnormal f, kTiny is at least an ulp. (Finding the nearest
-// float beyond x would take longer.)
+// For |x| < 2^127, these functions round x to the nearest float f, and move f outward by at least
+// one ulp. This is more than the rounding error. For subnormal f, kTiny is at least one ulp.
 constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);
@@ -51,7 +50,7 @@ bool meet(const FloatBox& a, const FloatBox& b) {
   return true;
 }
 
-/// The boxes of all triangles. Each vertex is rounded once for all triangles that use it.
+/// Returns the boxes of all triangles. Rounds each vertex once.
 std::vector<FloatBox> float_boxes(const Scene& scene, unsigned threads) {
   std::vector<FloatBox> points(scene.vertices.size());
   for_chunks(points.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -80,7 +79,7 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
 }
 
-/// A device with two hierarchies. Each run builds them anew, in memory that is kept between runs.
+/// A device with two hierarchies. Each run builds the hierarchies again, in the same memory.
 class Embree {
  public:
   Embree(RTCBuildQuality quality, unsigned threads)
@@ -126,11 +125,11 @@ struct Found {
   const PeerScene& scene;
   const std::vector<FloatBox>& boxes;
   PeerCandidates& candidates;
-  std::uint32_t second;  // added to the second hierarchy's numbers of primitives
+  std::uint32_t second;  // primitive i of the second hierarchy is triangle second + i
 };
 
-/// Adds candidates. Embree calls this from any of its threads with all pairs of two leaves that
-/// meet. A hierarchy with itself gives both orders of every pair whose boxes overlap.
+/// Adds candidates. Embree calls this function in any of its threads, with all pairs of two leaves
+/// that meet. For a hierarchy against itself, Embree gives every pair as (a, b) and as (b, a).
 void collect(void* data, RTCCollision* collisions, unsigned count) {
   const Found& found = *static_cast<const Found*>(data);
   PeerCandidates::Part& part = found.candidates.part();

@@ -1,9 +1,10 @@
-// FCL, in three ways: its hierarchies followed by exact decisions (broad); as its users run it,
-// with its own test of two triangles, which rounds (narrow), also with hierarchies that are kept
-// while objects move (poses); and its distances.
-//
-// FCL's library holds only the templates in double, which its headers declare. Those in float are
-// instantiated here.
+// FCL, in four ways.
+// - broad: its hierarchies, followed by exact decisions.
+// - narrow: as its users run it, with its own test of two triangles, which rounds.
+// - poses: as narrow, with hierarchies that are kept while objects move.
+// - distances.
+// The compiled library has FCL's templates only in double. The templates in float are instantiated
+// here.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -31,7 +32,7 @@ namespace {
 constexpr const char* kLibrary = "FCL " FCL_VERSION;
 
 /// The hierarchy of one object, with the interface for search_trees(). Primitive i is triangle
-/// first + i. The larger node is divided first, as in FCL.
+/// first + i. Of two nodes the larger one is divided first, as in FCL.
 template <class Volume>
 struct Model {
   std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
@@ -100,7 +101,7 @@ struct Objects {
     for (const auto& object : placed) manager.registerObject(object.get());
     manager.setup();
   }
-  /// The pairs of objects whose boxes meet.
+  /// Returns the pairs of objects whose boxes meet.
   std::vector<IndexPair> meeting() const {
     if (placed.size() < 2) return {};
     Manager manager;
@@ -111,7 +112,7 @@ struct Objects {
     std::vector<IndexPair> pairs;
     manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
       static_cast<std::vector<IndexPair>*>(data)->emplace_back(index_of(a), index_of(b));
-      return false;  // go on: there may be more pairs
+      return false;  // true would end the search
     });
     return pairs;
   }
@@ -121,9 +122,8 @@ struct Objects {
   std::vector<std::unique_ptr<Placed>> placed;
 };
 
-/// Finds candidates by FCL's hierarchies and overlap tests of volumes: pairs of leaves that
-/// overlap. FCL's traversal has one thread and does not test a model with itself, so search_trees()
-/// is used in its place.
+/// Finds candidates: pairs of leaves of FCL's hierarchies that overlap by FCL's tests of volumes.
+/// FCL's own traversal is not used, since it has one thread and does not test a model with itself.
 template <class Volume>
 BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
   const Stopwatch building;
@@ -154,10 +154,9 @@ void initialize(Node& node, const Objects<Volume>& objects, std::size_t a, std::
   }
 }
 
-/// The pairs of triangles that fcl::collide() finds between two objects. This calls the function
-/// that fcl::collide() calls after it has looked up the kinds of the two models. Calling
-/// fcl::collide() would compile its table for all kinds of shapes in float, which Debian's library
-/// does not have.
+/// Adds the pairs of triangles that fcl::collide() finds between two objects. Calls the inner
+/// function that fcl::collide() would call. Calling fcl::collide() in float would compile code for
+/// all kinds of shapes, since Debian's library has none of this code in float.
 template <class Scalar>
 void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                  std::vector<TrianglePair>& pairs) {
@@ -175,7 +174,7 @@ void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std
   }
 }
 
-/// The pairs that all tasks found, each with its lower number first, sorted.
+/// Returns all pairs that the tasks found, sorted. In each pair the lower number is first.
 std::vector<TrianglePair> sorted(const std::vector<std::vector<TrianglePair>>& found) {
   std::vector<TrianglePair> out;
   for (const std::vector<TrianglePair>& some : found) {
@@ -203,8 +202,8 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
     const auto [a, b] = tasks[i];
     collide_two(objects, a, b, found[i]);
     if (a != b) return;
-    // For a model with itself, FCL reports every pair in both orders, and every triangle with
-    // itself and with its neighbours.
+    // For a model against itself, FCL reports every pair as (a, b) and as (b, a). It also reports
+    // each triangle with itself and with its neighbours.
     std::erase_if(found[i], [&scene](const TrianglePair& pair) {
       return pair.a >= pair.b || share_position(scene.corners(pair.a), scene.corners(pair.b));
     });
@@ -215,7 +214,8 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   return answer;
 }
 
-/// Builds hierarchies and broad phase, which the result keeps; each call moves the objects.
+/// Builds the hierarchies and the broad phase. Returns a function that keeps them, and moves the
+/// objects in each call.
 PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   using All = Objects<fcl::OBBRSS<double>>;
   struct Kept {
@@ -244,22 +244,22 @@ PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   };
 }
 
-/// The distance of two objects by fcl::distance(); infinity if it finds none below `most`. This
-/// calls the function that fcl::distance() calls, for the reason that collide_two() gives.
+/// Returns the distance of two objects as by fcl::distance(); infinity if it is not below `most`.
+/// Calls an inner function of FCL, for the reason that collide_two() gives.
 template <class Scalar>
 Scalar distance_of(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                    Scalar most) {
-  const fcl::DistanceRequest<Scalar> request(true);  // the nearest points too
+  const fcl::DistanceRequest<Scalar> request(true);  // also computes the nearest points
   fcl::DistanceResult<Scalar> result(most);
   fcl::detail::MeshDistanceTraversalNodeOBBRSS<Scalar> node;
   initialize(node, objects, a, b, request, result);
   fcl::detail::distance(&node);
   if (result.b1 == fcl::DistanceResult<Scalar>::NONE)
     return std::numeric_limits<Scalar>::infinity();
-  return std::max(result.min_distance, Scalar(0));  // below 0 means that the models meet
+  return std::max(result.min_distance, Scalar(0));  // a negative value: the models meet
 }
 
-/// The limit for queries of distances up to `within`. FCL finds only distances below the limit, so
+/// Returns FCL's limit for distances up to `within`. FCL finds only distances below the limit, so
 /// the limit is larger than `within`.
 template <class Scalar>
 Scalar most_of(double within) {
@@ -331,8 +331,7 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   return answer;
 }
 
-/// Why FCL is not asked about the scene; empty if it is. A degenerate triangle has no oriented box,
-/// since its box would have no axes.
+/// Says why FCL cannot take the scene. Empty if it can.
 std::string refuses(const Scene& scene) {
   return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
 }

@@ -1,11 +1,12 @@
-// ODE as its users run it: its sweep and prune, its trees (OPCODE, in float) and its contacts of
-// two triangles, which round. The public interface gives no candidates, so no exact test can
+// ODE as its users run it: sweep and prune, trees (OPCODE, in float), and contacts of two
+// triangles. All of these round. ODE's public interface gives no candidates, so no exact test can
 // follow.
 //
-// Contacts are not a list of pairs. Each contact names its two triangles, but ODE merges contacts
-// that are within 1e-4 units: at equal depth it calls a callback, which notes both pairs here; else
-// it keeps only the deeper contact. It also reports at most 65,535 contacts of two objects, and
-// none of an object with itself. Pairs that are lost in these ways count as missed.
+// ODE reports contacts, and each contact has two triangles. Contacts that are within 1e-4 units are
+// merged. If the two contacts have equal depth, ODE calls a callback, and the callback here records
+// the pairs of the two contacts. Else ODE keeps only the deeper contact. ODE reports at most 65,535
+// contacts of two objects, and no contact of an object with itself. Pairs that are lost in these
+// ways count as missed.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 static_assert(std::is_same_v<dReal, double> && sizeof(Vec3) == 3 * sizeof(double));
 
 constexpr const char* kLibrary = "ODE " dODE_VERSION;
-constexpr int kMostContacts = 65535;  // the most that dCollide() can be asked for
+constexpr int kMostContacts = 65535;  // the largest number that dCollide() accepts
 
 [[noreturn]] void refuse(int, const char* message, std::va_list arguments) {
   char text[400];
@@ -30,8 +31,7 @@ constexpr int kMostContacts = 65535;  // the most that dCollide() can be asked f
   throw Error(kLibrary, text, "leave it out");
 }
 
-/// Starts ODE once. A failed assertion, which would end the process, becomes an Error; warnings of
-/// contacts that are not merged are not printed.
+/// Starts ODE once. A failed assertion of ODE becomes an Error. Messages of ODE are not printed.
 void start_ode() {
   static const bool started = [] {
     dSetErrorHandler(refuse);
@@ -44,9 +44,9 @@ void start_ode() {
   }
 }
 
-/// The merged contacts of two objects. For each merge ODE calls note_merged() twice: for the first
-/// object and then for the second. Each call names that object's triangle in the contact that ODE
-/// already has (`had`) and in the contact that is merged into it (`merged`).
+/// The merged contacts of two objects. For each merge, ODE calls note_merged() for the first object
+/// and then for the second object. A call names two triangles of the object: the triangle in the
+/// contact that ODE keeps (`had`), and the triangle in the contact that is dropped (`merged`).
 struct Merged {
   dGeomID first = nullptr;
   int had = 0;
@@ -63,8 +63,8 @@ class Model {
     const auto [least, most] = vertices_of(scene, object);
     faces_.reserve(triangles.size());
     for (const auto& [a, b, c] : triangles) faces_.push_back({a - least, b - least, c - least});
-    // A mesh of one triangle has no contacts in ODE 0.16.2, and two of them crash it. So it gets
-    // that triangle twice.
+    // In ODE 0.16.2, a mesh of one triangle has no contacts, and two such meshes crash ODE. So the
+    // mesh gets its only triangle twice.
     if (faces_.size() == 1) faces_.push_back(faces_.front());
     data_ = dGeomTriMeshDataCreate();
     dGeomTriMeshDataBuildDouble(data_, scene.vertices[least].data(), sizeof(Vec3),
@@ -106,7 +106,7 @@ class Model {
   dGeomID geom_;
 };
 
-/// The pairs of objects whose boxes meet, by ODE's sweep and prune.
+/// Returns the pairs of objects whose boxes meet, by ODE's sweep and prune.
 std::vector<std::pair<const Model*, const Model*>> meeting(
     const std::vector<std::unique_ptr<Model>>& models) {
   std::vector<std::pair<const Model*, const Model*>> pairs;
@@ -121,8 +121,8 @@ std::vector<std::pair<const Model*, const Model*>> meeting(
   return pairs;
 }
 
-/// Adds the pairs of triangles that the contacts of two objects name. contacts: kMostContacts of
-/// them, to be overwritten.
+/// Adds the pairs of triangles in the contacts of two objects. contacts: a buffer of kMostContacts
+/// contacts.
 void add_pairs(const Model& a, const Model& b, Merged& merged, std::vector<dContactGeom>& contacts,
                std::vector<TrianglePair>& pairs) {
   merged.first = a.geom();

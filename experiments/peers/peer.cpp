@@ -1,4 +1,4 @@
-// The lists of peers, in the order of tables. If no adapter of this build gives a peer, its entry
+// The lists of peers, in the order of tables. For a peer that this build does not have, the entry
 // says why it is missing.
 #include "experiments/peers/peer.h"
 
@@ -11,7 +11,7 @@
 namespace farcull {
 namespace {
 
-std::atomic<std::uint64_t> last_id = 0;  // of PeerCandidates
+std::atomic<std::uint64_t> last_id = 0;  // the last PeerCandidates::id_
 
 struct Known {
   const char* name;
@@ -59,7 +59,7 @@ std::string why_missing(const Known& known) {
   return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
 }
 
-/// The peers of a list. part: the member of LibraryPeers that holds them.
+/// Returns the peers of a list. part: the member of LibraryPeers that has the peers of this kind.
 template <class PeerKind>
 std::vector<PeerKind> listed(std::span<const Known> list,
                              std::vector<PeerKind> LibraryPeers::*part) {

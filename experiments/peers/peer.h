@@ -1,6 +1,5 @@
-// Peers: other libraries that a user could take instead of farcull. `farcull bench` and the studies
-// compare farcull with them in one process. One file per library adapts it; peer.cpp lists the
-// peers.
+// Peers are other libraries that a user could take instead of farcull. `farcull bench` and the
+// studies compare farcull with peers in one process. Each library has a file that adapts it.
 #pragma once
 
 #include <array>
@@ -22,42 +21,39 @@
 namespace farcull {
 
 struct BenchAnswer {
-  double build_ms = 0;       // building a hierarchy, if there is one
-  double candidates_ms = 0;  // finding the candidates
-  double exact_ms = 0;  // deciding the candidates; if several threads alternate between finding and
-                        // deciding, the sum of their times for deciding, divided by their number
-  std::uint64_t candidate_pairs = 0;     // candidates given to the exact decision
+  double build_ms = 0;                   // building a hierarchy; 0 without a hierarchy
+  double candidates_ms = 0;              // finding the candidates
+  double exact_ms = 0;                   // deciding the candidates; a mean over the threads
+  std::uint64_t candidate_pairs = 0;     // number of candidates
   std::vector<TrianglePair> pairs = {};  // sorted, each once
 };
 
-/// Computes the pairs from the triangles of a scene. Throws Error if it cannot guarantee its
-/// answer.
+/// Computes the pairs from the triangles of a scene. Throws Error if it cannot guarantee the pairs.
 using BenchRun = std::function<BenchAnswer(const Scene&)>;
 
-/// A library that finds all pairs of triangles that collide and are not neighbours
-/// (verify/exact.h), of different objects, or of one object marked `self`.
+/// A library that finds all colliding pairs of triangles, except neighbours (verify/exact.h). The
+/// triangles are in different objects, or in one object marked `self`.
 struct Peer {
   std::string name;     // as in --peers
   std::string library;  // with its version, such as "CGAL 5.5.1"
-  std::string missing;  // why it cannot run in this build; empty: it can
-  std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
-  std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about the scene;
-                                                          // empty: it can. Null: about all
+  std::string missing;  // why the peer cannot run in this build; empty: it can run
+  std::function<BenchRun(unsigned threads)> set_up = {};  // makes devices and thread pools
+  std::function<std::string(const Scene&)> refuses = {};  // why the peer cannot take the scene; may
+                                                          // return ""; null: takes all scenes
 };
 
-/// objects: every two objects with triangles. nearest: each such object and its nearest other one.
+/// objects: every two objects with triangles. nearest: each object and its nearest other object.
 enum class DistanceTask : std::uint8_t { objects, nearest };
 
 struct PeerQuestion {
   DistanceTask task = DistanceTask::objects;
-  double within = std::numeric_limits<double>::infinity();  // world units; larger distances may be
-                                                            // left out
+  double within = std::numeric_limits<double>::infinity();  // largest distance, in world units
 };
 
 /// A distance of two objects. With `objects` a < b; with `nearest` b is the object nearest to a.
 struct PeerDistance {
   std::uint32_t a = 0, b = 0;
-  double distance = 0;  // as the library gives it, but 0 if the library says that they meet
+  double distance = 0;  // from the library; 0 if the library says that the objects meet
   bool operator==(const PeerDistance&) const = default;
 };
 
@@ -67,55 +63,57 @@ struct PeerDistances {
   std::vector<PeerDistance> distances = {};  // sorted by a, then b
 };
 
-/// A library that computes distances between the objects of a scene. All libraries round, so their
-/// distances may be off; `farcull bench --distances` measures by how much. Pairs of objects are
-/// divided over the threads; one query runs on one thread. The other members are as in Peer.
+/// A library that computes distances between the objects of a scene. All libraries round;
+/// `farcull bench --distances` measures the errors. The pairs of objects are divided over the
+/// threads. The distance of one pair is computed on one thread. Members without a comment are as in
+/// Peer.
 struct DistancePeer {
   std::string name, library, missing = {};
-  bool comparable = true;  // false: the library answers in floats, so its time does not show how
-                           // fast exact distances can be
+  bool comparable = true;  // false: the library answers in floats, so its time is not comparable
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};
 };
 
-/// The pairs of triangles of different objects that collide after each object was moved, sorted.
+/// Moves each object. Then returns the colliding pairs of triangles of different objects, sorted.
 using PoseRun = std::function<std::vector<TrianglePair>(std::span<const RigidMotion> motions)>;
 
-/// A library that keeps models of the objects of a scene while these move as a whole (farcull bench
-/// --poses). It rounds, as narrow_peers() do. The other members are as in Peer.
+/// A library that keeps models of the objects of a scene while the objects move (farcull bench
+/// --poses). It rounds, as narrow_peers() do. Members without a comment are as in Peer.
 struct PosePeer {
   std::string name, library = {}, missing = {};
   std::function<PoseRun(const Scene&, unsigned threads)> set_up = {};  // makes the models
   std::function<std::string(const Scene&)> refuses = {};
 };
 
-/// Why a peer of any kind cannot be asked about the scene; empty if it can.
+/// Says why a peer cannot take the scene. Empty if it can.
 template <class AnyPeer>
 std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
   return peer.missing.empty() && peer.refuses ? peer.refuses(scene) : peer.missing;
 }
 
-/// Broad phases, each followed by the exact decisions of verify/exact.h. They run at their best
-/// settings. All work that can be divided runs on the threads of the bench. Candidates are decided
-/// in bounded parts, so that tens of millions of overlapping boxes are never stored. This list and
-/// the three below include peers that this build does not have.
+/// Returns broad phases of libraries. Each is followed by the exact decisions of verify/exact.h,
+/// and runs at its best settings. All work that can be divided runs on the threads of the bench.
+/// Candidates are decided in parts of limited size, to save memory. The list includes peers that
+/// this build does not have. So do the three lists below.
 std::vector<Peer> all_peers();
 
-/// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
-/// may be missed or wrong. fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
-/// on coordinates rounded to that type. ode-trimesh is the contacts of ODE's dCollide().
-/// BenchAnswer::pairs has the pairs that the library reports, without neighbours (verify/exact.h)
-/// inside an object that is `self`; candidate_pairs is their number. One traversal runs on one
-/// thread; FCL's pairs of objects are divided over the threads.
+/// Returns libraries as their users run them, with their own inexact test of two triangles. So
+/// pairs may be missed or wrong. fcl-float and fcl-double use FCL's OBBRSS hierarchies and
+/// fcl::collide() on coordinates rounded to float or double. ode-trimesh uses the contacts of ODE's
+/// dCollide(). BenchAnswer::pairs has the pairs that the library reports, without neighbours
+/// (verify/exact.h). candidate_pairs is the number of these pairs. FCL's pairs of objects are
+/// divided over the threads.
 std::vector<Peer> narrow_peers();
 
-///   fcl-double, fcl-float  FCL's distance() of two OBBRSS hierarchies; with `nearest`, for objects
-///                          that its dynamic tree of boxes finds
-///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
-///                          squared_distance() of two triangles in doubles
+/// Returns libraries that compute distances.
+/// fcl-double, fcl-float: FCL's distance() of two OBBRSS hierarchies. With `nearest`, FCL's dynamic
+///   tree of boxes selects the objects.
+/// cgal-aabb: each triangle of one object against CGAL's AABB_tree of the other object, with CGAL's
+///   squared_distance() of two triangles in doubles.
 std::vector<DistancePeer> distance_peers();
 
-/// fcl-double is as in narrow_peers(), with hierarchies and broad phase kept from call to call.
+/// Returns one peer: fcl-double, as in narrow_peers(), but it keeps its hierarchies and its broad
+/// phase from call to call.
 std::vector<PosePeer> pose_peers();
 
 /// The peers that the adapter of one library adds to the lists above.
@@ -130,22 +128,21 @@ LibraryPeers bullet_library();
 LibraryPeers ode_library();
 PosePeer fcl_poses();
 
-// For the files that adapt a library: which triangles are tested with which, the exact decision of
-// candidates, the search of two trees, and distances of all pairs of objects.
+// For the files that adapt a library.
 
-/// A peer that needs no setup: each run calls run(scene, threads).
+/// Returns a peer that needs no setup. Each run calls run(scene, threads).
 Peer plain_peer(const std::string& name, const std::string& library,
                 BenchAnswer (*run)(const Scene&, unsigned threads),
                 std::function<std::string(const Scene&)> refuses = {});
 
-/// The numbers of the objects that have triangles, ascending.
+/// Returns the numbers of the objects that have triangles, ascending.
 std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 
-/// Why a peer does not take a scene: `reason` if it has degenerate triangles, else nothing.
+/// Returns `reason` if the scene has degenerate triangles, else "".
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 
-/// What a peer prepares from a scene: the boxes of the triangles, and which triangles are tested
-/// with which. The time for this counts as the peer's.
+/// What a peer prepares from a scene: the boxes of the triangles, and which pairs of triangles are
+/// tested. The time for this counts as time of the peer.
 struct PeerScene {
   /// with_boxes: false for a peer that makes its own boxes.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
@@ -153,21 +150,21 @@ struct PeerScene {
   const Scene& scene;
   std::vector<Box> boxes;            // per triangle
   std::vector<std::uint32_t> owner;  // per triangle
-  bool two_sides = false;            // exactly two objects have triangles, and neither is self
-  std::uint32_t second = 0;          // with two_sides, the second object's first triangle; else 0
+  bool two_sides = false;            // exactly two objects have triangles, and no object is `self`
+  std::uint32_t second = 0;          // if two_sides, the second object's first triangle; else 0
 
-  /// Whether a pair of these triangles counts. Neighbours by index do not; the exact decision finds
-  /// neighbours by position.
+  /// True if the pair (a, b) is tested. Triangles of one object that share a vertex index are not
+  /// tested. The exact decision later removes triangles that share a vertex position.
   bool counts(std::uint32_t a, std::uint32_t b) const {
     return owner[a] != owner[b] ||
            (scene.objects[owner[a]].self && !share_index(scene.triangles[a], scene.triangles[b]));
   }
-  /// Whether any pair of triangles counts.
+  /// True if counts() is true for any pair.
   bool has_pairs() const;
 };
 
-/// Takes candidates from one thread or several, and decides them: a part as soon as it is full, the
-/// rest on all threads at the end.
+/// Takes candidates from one or several threads. Decides a part of the candidates when the part is
+/// full, and the remaining candidates at the end on all threads.
 class PeerCandidates {
  public:
   /// parallel: candidates come from several threads, and each thread decides its own full parts.
@@ -196,7 +193,7 @@ class PeerCandidates {
   };
   Part& part();
 
-  /// The answer; candidates_ms is the time since construction less exact_ms.
+  /// Returns the answer. candidates_ms is the time since construction minus exact_ms.
   BenchAnswer finish(double build_ms = 0);
 
  private:
@@ -210,23 +207,23 @@ class PeerCandidates {
   std::vector<std::unique_ptr<Part>> parts_;
 };
 
-/// A node of each of two trees; the leaves below them are to be compared. For libraries that have
-/// trees, but only a traversal on one thread.
+/// A task of search_trees(): compare all leaves below node `a` of tree `first` with all leaves
+/// below node `b` of tree `second`. For libraries whose own traversal has only one thread.
 ///
-/// Nodes are numbered by int, the root is 0. A Tree has the functions is_leaf(node), left(node),
-/// right(node), triangle(leaf), size(node), of which only the order matters, and
-/// meets(node, other, node of other), which is true if triangles of the two nodes could meet.
+/// A node is an int, and the root is 0. A Tree has the functions is_leaf(node), left(node),
+/// right(node), triangle(leaf), size(node), and meets(node, other, node of other). size() only
+/// serves to compare two nodes. meets() is true if triangles of the two nodes could meet.
 template <class Tree>
 struct TreeTask {
   const Tree* first;
   const Tree* second;
   int a = 0;
   int b = 0;
-  bool inner = false;  // compare the leaves below a with each other; first == second and a == b
+  bool inner = false;  // compare the leaves below a with each other; then first == second, a == b
 };
 
-/// One step of a search. Nothing is done for disjoint volumes. Two leaves are given to `found`.
-/// Else the larger node is divided, and the new tasks are given to `next`.
+/// Does one step of a search. If the volumes of the two nodes are disjoint, does nothing. If the
+/// nodes are leaves, calls `found`. Else divides the larger node and gives the new tasks to `next`.
 template <class Tree, class Found, class Next>
 void step(const TreeTask<Tree>& task, const Found& found, const Next& next) {
   const Tree& first = *task.first;
@@ -260,8 +257,8 @@ void descend(const TreeTask<Tree>& task, const Found& found) {
   step(task, found, [&found](const TreeTask<Tree>& next) { descend(next, found); });
 }
 
-/// Gives the candidates of all tasks to `candidates`. For a tree with itself, leaves out neighbours
-/// by index. Precondition: `candidates` is parallel iff threads > 1.
+/// Gives the candidates of all tasks to `candidates`. If first == second, leaves out triangles that
+/// share a vertex index. Precondition: `candidates` is parallel iff threads > 1.
 template <class Tree>
 void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigned threads,
                   PeerCandidates& candidates) {
@@ -282,8 +279,8 @@ void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigne
   for_each_shared(tasks.size(), threads, [&](std::size_t i) { descend(tasks[i], add(tasks[i])); });
 }
 
-/// The finite distances of all pairs of objects, sorted; the work is divided over the threads.
-/// numbers: of the objects, ascending. distance(i, k): that of objects numbers[i] and numbers[k].
+/// Returns the finite distances of all pairs of objects, sorted. Divides the work over the threads.
+/// numbers: the objects, ascending. distance(i, k): the distance of numbers[i] and numbers[k].
 std::vector<PeerDistance> distances_of_pairs(
     const std::vector<std::uint32_t>& numbers, unsigned threads,
     const std::function<double(std::size_t i, std::size_t k)>& distance);

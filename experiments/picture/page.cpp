@@ -1,5 +1,5 @@
-// Pages that show a scene in a browser: the files of web/, a JSON text, and the blocks of numbers
-// (packed_numbers()) that the text names.
+// Makes pages that show a scene in a browser. A page has the files of web/, a JSON text, and blocks
+// of numbers (packed_numbers()). The JSON text has the names of the blocks.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -50,8 +50,8 @@ namespace {
 
 using nlohmann::json;
 
-// three.js, a library for WebGL in browsers (Debian's libjs-three), which is part of the program.
-// All three are empty if the program was built without three.js.
+// The files of three.js, a library for WebGL in browsers (Debian's libjs-three). The program
+// contains these files. All are empty if the program was built without three.js.
 struct ThreeJs {
   std::string_view library;   // three.min.js
   std::string_view controls;  // OrbitControls.js: the mouse and fingers turn and move the camera
@@ -83,7 +83,7 @@ Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most
                "leave objects out, or draw the flat picture alone, with -o");
 }
 
-// JSON inside a script element: its text must not look like the element's end.
+// Returns JSON text for a script element. The text must not contain the element's end.
 std::string for_script(const json& data) {
   std::string out;
   for (const char c : data.dump(-1, ' ', true, json::error_handler_t::replace))
@@ -100,7 +100,7 @@ void require_size(const Scene& scene) {
     throw too_large("objects", scene.objects.size(), kMostPageObjects);
 }
 
-// Blocks of a page, each a script element that browsers do not run.
+// The blocks of a page. Each block is a script element that browsers do not run.
 struct PageBlocks {
   // Returns the name of the new block.
   std::string add(const std::string& block) {
@@ -121,7 +121,7 @@ json page_box(const Box& box) {
           {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))}};
 }
 
-// The vertices, rounded in the box, the triangles and the objects.
+// Returns the vertices (rounded to steps of the box), the triangles and the objects.
 json frame_of(const Scene& scene, const Box& box, PageBlocks& blocks) {
   json objects = json::array();
   for (const Object& object : scene.objects)
@@ -143,8 +143,8 @@ void put(std::string& page, const std::string& mark, std::string_view text) {
   page.replace(at, mark.size(), text);
 }
 
-// A page: web/frame.html with the title, the body, the style, the blocks, three.js, page_view.js,
-// the page's own script, and its data.
+// Returns a page: web/frame.html with title, body, style, blocks, three.js, page_view.js, script
+// and data.
 std::string framed_page(std::string_view title, std::string_view body, const PageBlocks& blocks,
                         const json& about, std::string_view script) {
   const ThreeJs three = three_js();
@@ -229,7 +229,7 @@ class PageMaker {
     const View view = camera(arguments_.picture);
     const std::string& up = arguments_.picture.up;
     const Vec3 given = parse_view(up.empty() ? "y" : up).rows.row(2);
-    // If this is the direction of sight, camera() has chosen another one.
+    // If `given` is the direction of sight, camera() has chosen another direction.
     return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
   }
 
@@ -267,9 +267,9 @@ class PageMaker {
   std::vector<PanelResult> results_;
 };
 
-// The data of a row. Appends the ends of the segments of its curve to `segments`.
+// Returns the data of a row. Appends the ends of the row's segments to `segments`.
 json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector<Vec3>& segments) {
-  // For parts that are apart: the line between two nearest points.
+  // If the parts are apart, adds the line between two nearest points.
   std::vector<std::array<Vec3, 2>> lines = row.segments;
   if (row.squared && !row.inner) lines.push_back(row.witness);
   const std::size_t first = segments.size();
@@ -323,7 +323,7 @@ std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& bo
   std::vector<std::uint32_t> out;
   out.reserve(3 * points.size());
   for (int axis = 0; axis < 3; ++axis) {
-    // Uses halves, since the extent of a box of doubles may overflow.
+    // All values are halved, since the extent of a box of doubles may overflow.
     const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
     for (const Vec3& p : points) {
       const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;
@@ -395,7 +395,7 @@ std::string clash_page(const Scene& scene, const ClashRecord& record, const std:
            {"rows", rows},
            {"segments", blocks.add(packed_numbers(quantized(segments, box)))},
            {"frame", frame},
-           // Two hues that people with colour blindness can distinguish; neither one is green.
+           // People with colour blindness can distinguish these colours. No colour is green.
            {"colours",
             {{"found", {0, 0, 0}},
              {"missed", {0, 0, 0}},

@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of diameter 2 sqrt(2) px contains a whole pixel wherever it lies, so that one pixel has
-// the pure colour: the disc's middle is at most half a diagonal from the middle of a pixel, and the
-// pixel's corners are another half diagonal from there.
+// A disc of diameter 2 sqrt(2) px contains a complete pixel wherever the disc lies. So at least one
+// pixel has the pure colour. Reason: the disc's middle is at most half a diagonal from the middle
+// of a pixel, and the pixel's corners are half a diagonal from the middle of the pixel.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.
@@ -41,7 +41,7 @@ class Clusters2d {
     }
   };
 
-  // Takes out the groups. Cells that touch, also at corners, form one group.
+  // Removes and returns the groups. Cells that touch form one group, even if only corners touch.
   std::vector<Group> take_groups() {
     std::vector<Group> out;
     while (!cells_.empty()) {
@@ -63,7 +63,7 @@ class Clusters2d {
   }
 
  private:
-  double reach_;  // side of a cell, px
+  double reach_;  // side length of a cell in px
   std::map<Cell, Group> cells_;
 };
 
@@ -87,7 +87,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   if (missed.empty()) return 0;
   const double line = line_of(window);
   std::vector<PictureTriangle> over;
-  // Misses that are farther apart than the width of a ring get rings of their own.
+  // Missed triangles that are farther apart than the width of a ring get separate rings.
   const double ring = 11 * line;
   Clusters2d clusters(ring);
   for (const std::uint32_t t : missed) {

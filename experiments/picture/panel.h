@@ -13,37 +13,37 @@ namespace farcull {
 /// The arguments of `farcull picture`.
 struct PictureArguments {
   SceneArguments scene;
-  bool self = false;          // every object is tested against itself as well
-  std::optional<long> frame;  // frame of a scene that moves; empty: the scene without frames
-  // Of the motion; empty: 30 frames, or only `frame` for numbered meshes.
+  bool self = false;          // tests every object against itself
+  std::optional<long> frame;  // frame of a scene that moves; empty: the scene does not move
+  // The frames of the motion. If empty: 30 frames, or only `frame` for numbered meshes.
   std::optional<FrameRange> frames;
-  std::vector<RunOptions> panels;  // one panel each, side by side; verify and device are ignored
-  std::string view;                // direction that the eye looks along, as for parse_view(); "":
-                                   // down at an angle, at the side that faces +z
+  std::vector<RunOptions> panels;  // one for each panel; verify and device are ignored
+  std::string view;                // direction of sight, as for parse_view(); "": downward at an
+                                   // angle, at the side that faces +z
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
   bool zoom = false;               // only the colliding triangles
-  int width = 900, height = 760;   // px of a panel's picture, 64 to kMostPicture
+  int width = 900, height = 760;   // size of a panel's picture in px, 64 to kMostPicture
 };
 
 constexpr std::size_t kMostPanels = 6;
 
-/// The command line of these arguments, without -o.
+/// Returns the command line of these arguments, without -o.
 std::string command_of(const PictureArguments& arguments);
 
 /// Throws Error naming the option if a value is out of range, or if options exclude each other.
 /// Reads no scene and opens no device.
 void validate(const PictureArguments& arguments);
 
-/// The view of the picture. Its image is upright and not mirrored: right, up and backward are
-/// right-handed. Throws Error naming --up if it is the direction of sight.
+/// Returns the view of the picture. The image is upright and not mirrored: right, up and backward
+/// are right-handed. Throws Error naming --up if arguments.up is the direction of sight.
 View camera(const PictureArguments& arguments);
 
-/// The frames of the motion with arguments.frame. Precondition: a frame is given.
+/// Returns the frames of the motion. Precondition: arguments.frame is not empty.
 FrameRange frames_of(const PictureArguments& arguments);
 
 // Images with text: panels side by side, with titles above and legends below, as PNG. Pango and
-// cairo draw the font DejaVu Sans without hinting; if the system lacks it, fontconfig chooses
-// another font.
+// cairo draw the font DejaVu Sans without hinting. If the system lacks this font, fontconfig
+// chooses another font.
 
 struct TextStyle {
   double height = 14;  // px of a capital letter
@@ -51,14 +51,13 @@ struct TextStyle {
   Rgba colour = {30, 30, 34, 255};
 };
 
-/// Draws the text, in UTF-8, with the left end of its baseline at (x, baseline), px from the left
-/// and the top. An invalid byte is drawn as U+FFFD. Cuts the text at the edge of the image, and
-/// after `room` px, with "…" at its end.
+/// Draws a text in UTF-8. Its baseline begins at (x, baseline), in px from the left and the top. An
+/// invalid byte is drawn as U+FFFD. Text beyond the edge of the image is cut. Text wider than
+/// `room` px is cut and ends with "…".
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room);
 
-/// The font and the versions of the libraries that draw it: "DejaVu Sans, pango 1.50.12, cairo
-/// 1.16.0".
+/// Returns the font and the versions of the libraries: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
 std::string lettering_version();
 
 struct LegendEntry {
@@ -76,33 +75,36 @@ struct SheetPanel {
   int left = 0, top = 0;  // position of the image in the sheet of compose()
 };
 
-/// Blends `above`, with its opacity times `opacity`, over `below`, which is opaque and of that
-/// size.
+/// Blends `above` over `below`, after multiplying the opacity of `above` by `opacity`.
+/// Precondition: `below` is opaque, and the two images have the same size.
 void lay_over(Image& below, const Image& above, double opacity);
 
-/// Draws a circle around (x, y), px from the left and the top, with a light line on both sides.
+/// Draws a circle around (x, y), in px from the left and the top, between two light lines.
 void draw_ring(Image& image, double x, double y, double radius, double line, const Rgba& colour);
 
-/// A sheet with title and subtitle, the panels (at least one), and a line of small print. Cuts
-/// texts that are too long.
+/// Returns a sheet with title and subtitle, the panels (at least one), and a line of small print.
+/// Cuts texts that are too long.
 Image compose(const std::string& title, const std::string& subtitle,
               std::vector<SheetPanel>& panels, const std::string& small_print);
 
 /// Pairs of a keyword, 1 to 79 printable ASCII characters, and a text in UTF-8.
 using PngTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// The bytes of a PNG with RGB of 8 bits each; texts as tEXt, or as iTXt if not ASCII. The same
-/// image and texts give the same bytes with the same cairo. Throws Error if cairo fails.
-/// Precondition: the image has pixels, and all are opaque.
+/// Returns the bytes of a PNG with 8 bits each for red, green and blue. An ASCII text becomes a
+/// tEXt chunk, another text an iTXt chunk. The same image, texts and version of cairo give the same
+/// bytes. Throws Error if cairo fails. Precondition: the image has pixels, and all pixels are
+/// opaque.
 std::string to_png(const Image& image, const PngTexts& texts);
 
 /// The colour of missed pairs; nothing else has it.
 constexpr Rgba kMissedColour = {220, 0, 90};
-/// The colours of colliding triangles, and of triangles that a method kept in vain.
+/// kFoundColour: colliding triangles. kIdleColour: triangles that a method kept, but that do not
+/// collide.
 constexpr Rgba kFoundColour = {0, 128, 116}, kIdleColour = {240, 176, 32};
 constexpr double kIdlePart = 0.6;  // share of kIdleColour; the rest is the object's colour
 constexpr double kThrough = 0.28;  // opacity of collisions behind other triangles
-/// Colours of the objects, in turn: pale, so that only collisions have strong colours.
+/// Colours of the objects, used in turn. They are pale, so that only collisions have strong
+/// colours.
 constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
                                                  {218, 214, 206},
                                                  {186, 203, 184},
@@ -116,13 +118,13 @@ constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
 struct PanelResult {
   std::string title;                             // "cullide at 128 px"
   std::string headline;                          // "missed 12 of 4,268 colliding pairs"
-  std::uint64_t colliding = 0;                   // pairs, by the exact method
-  std::uint64_t neighbours = 0;                  // how many of these are neighbours
-  std::uint64_t missed = 0;                      // how many of `colliding` the method did not find
+  std::uint64_t colliding = 0;                   // colliding pairs, by the exact method
+  std::uint64_t neighbours = 0;                  // colliding pairs of neighbours
+  std::uint64_t missed = 0;                      // colliding pairs that the method did not find
   std::uint64_t missed_triangles = 0;            // triangles in a missed pair
-  std::uint64_t kept = 0;                        // triangles; 0 for exact, which culls none
-  std::uint64_t idle = 0;                        // how many of `kept` are in no collision
-  std::uint64_t rings = 0;                       // rings around misses that are too small to see
+  std::uint64_t kept = 0;                        // triangles that the method kept; 0 for `exact`
+  std::uint64_t idle = 0;                        // kept triangles that are in no collision
+  std::uint64_t rings = 0;                       // number of rings around small missed triangles
   bool drew = false;                             // the method drew in views at a resolution
   bool broken = false;                           // the method is guaranteed, but missed a pair
   std::string device;                            // device used: a renderer, "cpu", or "none"
@@ -133,24 +135,24 @@ struct DrawnPanel {
   SheetPanel sheet;
   PanelResult result;
 };
-/// The width of lines in a picture of this size, px.
+/// Returns the width of lines in px for a picture of this size.
 double line_of(const Window& window);
-/// An image of the triangles, transparent elsewhere.
+/// Returns an image of the triangles. Its other pixels are transparent.
 Image painted(const GlContext& context, const Scene& scene, const Window& window,
               const std::vector<PictureTriangle>& triangles);
-/// Draws the missed triangles over the image, with rings around those that are too small to see.
-/// Returns the number of rings.
+/// Draws the missed triangles over the image. Draws rings around triangles that are too small to
+/// see, and returns the number of rings.
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
                           const std::vector<std::uint32_t>& missed, Image& image);
-/// The method and its options without the resolution: "far, exact offset".
+/// Returns the method and its options without the resolution: "far, exact offset".
 std::string method_title(const RunOptions& options);
-/// "far, exact offset, at 128 px".
+/// Returns the title of a panel: "far, exact offset, at 128 px".
 std::string panel_title(const RunOptions& options);
-/// "missed 12 of 4,268 colliding pairs".
+/// Returns the headline: "missed 12 of 4,268 colliding pairs".
 std::string headline_of(const PanelResult& result);
 /// Sets the title and the headline over the panel, and the colour of the headline.
 void set_heading(DrawnPanel& panel);
-/// Adds a line to the legend: for a colour, or for the rings if there are any.
+/// Adds a line for a colour to the legend.
 void explain(DrawnPanel& panel, Rgba colour, const std::string& text);
 void explain_rings(DrawnPanel& panel, const std::string& text);
 
