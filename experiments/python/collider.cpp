@@ -152,7 +152,6 @@ py::tuple tuple_of(const Values& values, const Name& name) {
   return py::tuple(out);
 }
 
-// Reads the options of a collider from the dictionary that _collide.py makes.
 Options options_of(const py::dict& question) {
   return {.threads = question["threads"].cast<unsigned>(),
           .self = question["all_objects"].cast<bool>(),

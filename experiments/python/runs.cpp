@@ -55,7 +55,6 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   });
 }
 
-// weld: a tolerance for parse_weld(); if empty, vertices stay as they are.
 SceneArguments arguments_of(const std::vector<std::string>& names, const std::string& weld) {
   SceneArguments out(names);
   if (!weld.empty()) out.weld = weld;
@@ -135,7 +134,6 @@ Ignored pairs_named(const KeptScene& kept, const std::string& first, const std::
 
 void add_scenes(py::module_& module) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  // Returns a getter, which gives the vertices or triangles of a scene as a view (n, 3).
   const auto rows = [](auto rows_of) {
     return [rows_of](py::object self) {
       const auto& out = (*self.cast<const KeptScene&>().scene).*rows_of;
@@ -236,7 +234,6 @@ py::object kinds_of(const Record& record, const std::vector<ContactShape>& conta
   return kind_array(contacts);
 }
 
-// Returns the pairs in the form of a list that was read from a file.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
   GivenList out{.name = "pairs", .has_frames = false, .rows = {}, .not_looked_at = {}};
@@ -319,7 +316,6 @@ struct KeptClash {
   ClashRecord record;
 };
 
-// tolerance: a text for parse_weld().
 KeptClash clash_of(const KeptScene& kept, double clearance, const std::string& tolerance,
                    const Ignored& ignore, bool depth, unsigned threads) {
   return without_gil([&] {

@@ -19,7 +19,6 @@ constexpr std::size_t kRowsShown = 24;
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 
-/// Returns the number of each triangle within its object, from 0.
 std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
   return {d.triangles.a - scene.objects[d.objects.a].first_triangle,
           d.triangles.b - scene.objects[d.objects.b].first_triangle};

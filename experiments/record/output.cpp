@@ -365,7 +365,6 @@ void give_pairs_rows(const Scene& scene, const Record& record, const std::string
                      const PairColumns& columns, const TextSink& sink) {
   const Rows rows(scene, record, before, columns);
   const std::vector<RowRange> ranges = ranges_of(record.collisions);
-  // Each text is filled again and again, which saves allocations.
   std::vector<std::string> texts(chunks_for(ranges.size(), 1));
   for (std::size_t from = 0; from < ranges.size(); from += texts.size()) {
     const std::size_t count = std::min(texts.size(), ranges.size() - from);

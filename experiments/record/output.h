@@ -76,7 +76,6 @@ inline nlohmann::ordered_json point_json(const Vec3& p) { return {p.x(), p.y(), 
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
 nlohmann::ordered_json gl_json(const GlInfo& gl);
-/// Returns the number of threads of a software device; null for other devices.
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
@@ -134,7 +133,6 @@ std::string plan_table(const Scene& scene, const Plan& plan);
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
                                  const std::optional<MissPrediction>& misses = {});
 
-/// Returns the plan's decision about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
 /// Returns distances as JSON (docs/proximity.md). seed: the seed of a random scene.

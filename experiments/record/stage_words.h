@@ -11,7 +11,6 @@ std::string name_of(const Stage& stage);
 std::string reason_of(const Stage& stage);
 /// Returns "objects", "clusters of 32" (or another number) or "triangles"; empty for kNoLevel.
 std::string level_name(std::uint32_t level);
-/// Returns "triangles", "pairs" or "".
 std::string to_string(Unit unit);
 /// Returns why a run used no device. Precondition: the run used no device.
 std::string no_device_reason(const std::vector<Stage>& trace);

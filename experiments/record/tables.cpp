@@ -115,7 +115,6 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
 }
 
-// Adds a stage of a round to its row.
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);

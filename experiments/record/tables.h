@@ -51,7 +51,6 @@ std::string not_asked_line(const Scene& scene, const std::string& options = "--s
 /// Returns a text about polygons of a file that are not simple: ", 2 polygons folded: face 7 of
 /// fin, face 9 of fin". Empty if there are no such polygons.
 std::string folded_text(const Scene& scene);
-/// Returns the name of the scene, and how many objects and triangles it has.
 std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles);
 /// Returns a line with the number of rows that a table does not show; empty if it shows all rows.
 std::string more_line(std::size_t all, std::size_t shown);
@@ -74,7 +73,6 @@ std::string run_table(const Scene& scene, const Record& record, const std::strin
 /// culled, 26,214,400 pairs accounted for".
 std::string verdict_text(const Accounting& accounting);
 
-/// Returns two lines: the number of pairs, and how many pairs are in each class.
 std::string accounting_sum(const Accounting& accounting);
 
 /// A method in a comparison.

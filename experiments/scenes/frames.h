@@ -28,7 +28,6 @@ class FrameSource {
   /// have %d or %04d, the number of the frame. self: every object is tested against itself. Throws
   /// Error if nothing moves, or as load_scene() does for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
-  /// For a moving scene that the caller has made.
   explicit FrameSource(MovingScene moving);
 
   /// Returns the scene at a frame of the range, each time the same Scene object. The triangles stay
@@ -43,7 +42,6 @@ class FrameSource {
   /// True if the last call of at() changed the indices of triangles, the number of vertices or the
   /// objects. False after the first call.
   bool topology_changed() const { return changed_; }
-  /// The notes of a built-in motion on the current frame.
   FrameNotes notes() const;
 
  private:

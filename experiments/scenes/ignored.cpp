@@ -94,7 +94,6 @@ std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   return out + (scene.objects.size() > kShown ? ", ..." : "");
 }
 
-/// Returns all pairs of an object of `first` and a different object of `second`.
 std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
                                  const std::vector<std::uint32_t>& second) {
   std::vector<ObjectPair> out;

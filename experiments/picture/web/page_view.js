@@ -105,7 +105,6 @@ function shareOf(colour) {
 }
 
 class SceneView {
-  // Throws if the browser has no WebGL 2.
   constructor(canvas, about) {
     const context = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
     if (!context) throw new Error("This browser has no WebGL 2 here.");
@@ -222,7 +221,6 @@ class SceneView {
     this.places.needsUpdate = true;
   }
 
-  // Sets the state of every triangle, which decides what is drawn over the scene.
   setStates(states) {
     this.states.image.data.set(states);
     this.states.needsUpdate = true;
@@ -367,7 +365,6 @@ class SceneView {
     this.ask();
   }
 
-  // Moves the view by fractions of its height.
   move(right, up) {
     const by = this.axis(0).multiplyScalar(2 * right / this.camera.zoom);
     this.shift(by.add(this.axis(1).multiplyScalar(2 * up / this.camera.zoom)));
@@ -438,7 +435,6 @@ function resetView() {
   fitted = cameraText();
 }
 
-// The keys of the camera, on every page.
 const VIEW_KEYS = {
   ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
   ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),

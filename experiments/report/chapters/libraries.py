@@ -245,7 +245,7 @@ def add_ours(chapter, rows):
         of_questions = of[~of.asks.isin(["pairs", "meshes"])]
         missed, asked, wrong, _ = answers(of_pairs, True, False)
         lost, known, false, reported = answers(of_meshes, False, False)
-        many = counted(sum(map(len, of_meshes.parts)), "mesh", "meshes")  # a part is a mesh
+        many = counted(sum(map(len, of_meshes.parts)), "mesh", "meshes")
         off = totals(of_questions, "missed", "wrong")
         for bad, what in ((missed, f"of {grouped(asked)} pairs missed"),
                           (wrong, f"of {grouped(asked)} pairs reported wrongly"),

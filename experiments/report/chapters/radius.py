@@ -211,7 +211,7 @@ def placement_table(placements):
     for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
             radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
-            rate_of_rows(rows).replace(", 95 % interval ", "; ").replace("95 % bound: ", ""),  # the caption has these words
+            rate_of_rows(rows).replace(", 95 % interval ", "; ").replace("95 % bound: ", ""),
             of_rows(rows, "missed", "colliding"),
             rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out

@@ -77,7 +77,6 @@ Frame frame_of(const Vec3& direction) {
   return {along, across, along.cross(across)};
 }
 
-// Returns a needle about the origin.
 Corners hair(const Frame& frame, Random& random) {
   const Vec3 along = (frame.along + kBending * random.in_ball()).normalized();
   const Vec3 aside = across(along, kWidth, random);
@@ -144,7 +143,6 @@ Corners sliver(double aspect, Random& random) {
           start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
 }
 
-// Returns an equilateral triangle about the origin, in a random direction.
 Corners equilateral(double side, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 other = across(along, random);

@@ -209,7 +209,6 @@ class Part {
     add(corners[0], corners[1], corners[2]);
     add(corners[0], corners[2], corners[3]);
   }
-  // Adds a wall between two loops, which have the same number of vertices.
   void wall(const Loop& from, const Loop& to) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const std::size_t next = (i + 1) % from.size();
@@ -244,7 +243,6 @@ class Part {
       }
     }
   }
-  // Returns the mesh, rotated so that its axes become x, y and z.
   Mesh placed(const Vec3& x, const Vec3& y, const Vec3& z) && {
     for (Vec3& p : vertices_) p = Vec3(p.x() * x + p.y() * y + p.z() * z);
     return finished(std::move(vertices_), std::move(triangles_));

@@ -111,7 +111,6 @@ Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven)
   return {out * std::cos(angle), out * std::sin(angle), height};
 }
 
-// The quads of a funnel.
 struct FunnelGrid {
   std::uint32_t around = 96, pipe_rings = 8, cone_rings = 12;
   std::uint64_t triangles() const { return 2ull * around * (pipe_rings + cone_rings); }
@@ -134,7 +133,6 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid
     profile.push_back({pipe + gap, begin * (0.2 + 0.8 * k / quads.pipe_rings)});
   for (std::uint32_t k = 1; k <= quads.cone_rings; ++k) {
     const double z = (top - begin) * k / (quads.cone_rings - quads.cone_rings / 12.0);
-    // The last ring lies above the cloth.
     profile.push_back({pipe + gap + slope * z, begin + z});
   }
   std::vector<Vec3> vertices;

@@ -206,7 +206,6 @@ constexpr double kUsualCrowdDensity = 400.0 / (12 * 12 * 12);
 
 // size: number of objects; second: objects per unit of volume.
 BuiltScene make_crowd(const SceneParameters& parameters, std::uint64_t seed) {
-  // With 400 objects and the usual density, the cubic root is exactly 1.
   const double half = 6 * std::cbrt(static_cast<double>(parameters.size) / 400 *
                                     (kUsualCrowdDensity / parameters.second));
   Random random(seed);

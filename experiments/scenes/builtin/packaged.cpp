@@ -108,7 +108,6 @@ struct Breaking {
   double height = 0;                    // height of the dragon
 };
 
-// Returns a piece with all triangles for which `takes` is true.
 template <class Takes>
 Piece part_of(const Mesh& mesh, const Takes& takes) {
   PartMaker maker(mesh.vertices);
@@ -204,7 +203,6 @@ void break_at(const Breaking& dragon, double time, Scene& scene) {
   }
 }
 
-// size: number of triangles of the dragon.
 BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
   const Mesh dragon = refined(packaged(kDragon), parameters.size);
   const Mesh bunny = packaged(kBunny);

@@ -172,7 +172,6 @@ struct Leaf {
   double turns = 0;  // turns per unit of time while the leaf falls
 };
 
-// size: number of cylinders.
 BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kRoom = 2.5;  // half the side of the room for 100 cylinders of length 1
   const double room = kRoom * std::cbrt(static_cast<double>(parameters.size) / 100);
@@ -207,7 +206,6 @@ BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
       });
 }
 
-// size: number of leaves.
 BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kFall = 4;  // fall of a leaf per unit of time
   Random random(seed);

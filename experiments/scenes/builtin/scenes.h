@@ -87,7 +87,6 @@ struct SceneChange {
 /// Throws Error naming the scene if a coordinate is not finite afterwards.
 void apply(const SceneChange& change, Scene& scene);
 
-/// Returns the scene after apply() with `scale` and `translate`.
 Scene transformed(Scene scene, double scale, const Vec3& translate);
 
 /// A suffix that any built-in scene takes, as in two-spheres@far; several apply from left to right.
@@ -206,7 +205,6 @@ BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 
-/// Returns a scene of two objects. `placement` moves the second object.
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement = {});
 /// Returns the scene, moved to the middle of its motion.

@@ -23,8 +23,8 @@ struct ClothSettings {
   double stiffness = 1e4;           // stiffness of the spring along an edge, N/m; > 0
   double side = 1;                  // side of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
-  double buckling_load = 1;         // N/m; >= 0: an edge of length l buckles at a thrust of this
-                                    // times l
+  double buckling_load = 1;         // N/m; >= 0: edges of length l buckle at the thrust
+                                    // buckling_load * l, N
   double bending_rigidity = 2e-5;   // N m; >= 0
   double gravity = 9.81;            // acceleration along -z, m/s^2; >= 0
   double drag = 0.1;                // force of the air per area and speed, N s/m^3; >= 0
@@ -225,7 +225,6 @@ class Cloth {
   /// The kinetic energy is then lost; the report says so.
   ClothReport step();
 
-  /// Returns the energies now; the other members are about the last step.
   const ClothReport& report() const;
 
   ClothState state() const;

@@ -105,7 +105,6 @@ void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, 
 }
 
 void add_springs_and_hinges(Model& model) {
-  // For each edge, the opposite corner in the first triangle with this edge.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
   const std::uint32_t side = model.cells + 1;
   const double cell = model.settings.side / model.cells;

@@ -43,7 +43,6 @@ bool is_compressed(const std::string& path) {
   return lower_case(std::filesystem::path(path).extension().string()) == ".gz";
 }
 
-// Returns the name of the file without its folder and without .gz.
 std::filesystem::path plain_name(const std::string& path) {
   const std::filesystem::path name(path);
   return is_compressed(path) ? name.stem() : name.filename();

@@ -36,8 +36,7 @@ struct MeshPart {
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
 /// Returns the format that the extension of a path names, in upper or lower case. A final ".gz" is
-/// passed over. For any other extension throws Error naming the path; foreign_mesh(path) if not
-/// empty.
+/// passed over. Throws Error naming the path, if possible foreign_mesh(path), for other extensions.
 MeshFormat mesh_format(const std::string& path);
 /// Returns the format of "obj", "off", "ply" or "stl". Throws Error naming --format for other
 /// names.
@@ -93,7 +92,6 @@ class MeshCache {
   /// Precondition: the cache was constructed with a first frame.
   void set_frame(long frame) { frame_ = frame; }
 
-  /// Sets how meshes are read from now on.
   void read_as(MeshReading reading) { reading_ = std::move(reading); }
   /// The end of the scene's name, such as ", welded at 1e-7*size"; empty if nothing is welded.
   std::string note() const { return reading_.weld.empty() ? "" : ", welded at " + reading_.weld; }
@@ -200,7 +198,6 @@ Triangulation triangulate(std::span<const Vec3> corners,
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // a fraction of the diagonal of the mesh's box
-  /// Returns the distance. box: the box around the coordinates.
   double length(const Box& box) const {
     return value * (relative ? (box.hi - box.lo).stableNorm() : 1);
   }
