@@ -13,7 +13,7 @@
 #     second half of its objects moved away by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene. Each is compared with the truth in
 #     rational numbers (tests/experiments/method/distance_truth.h), to the bit. An hour or two on one core.
 # motion and distances skip runs that have a record of this commit; remove the folder to begin again. Without a GPU the native
-# canvas draws; DEVICE=software (or another --device) asks for GL.
+# canvas draws (on the cores of the CPU). DEVICE=software (or another value of --device) makes GL draw.
 set -euo pipefail
 
 form=meshes
@@ -47,7 +47,7 @@ out=build/reliability
 if [[ $form != meshes ]]; then out+=-$form; fi
 mkdir -p "$out"
 failed=()
-# Records have the commit in their names, so that those of another commit are not reused.
+# Records have the commit in their names, so that records of another commit are not reused.
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 device=(${DEVICE:+--device "$DEVICE"})
 
@@ -58,7 +58,7 @@ mesh_scene() {
     scene=$1$copy resolutions=128,1024 methods=far,exact
     if [[ -z $copy ]]; then resolutions=64,128,256,512,1024,2048 methods=far,cullide,exact; fi
     for phase in objects triangles; do
-      # Few triangles are drawn after boxes of triangles, so the same pairs may be at risk in finer pixels.
+      # After boxes of triangles only few triangles are drawn. The same pairs may be at risk at higher resolutions.
       if [[ $phase == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
       build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
         --broad-phase $phase "${device[@]}" --repeat 1 --json "$out/$scene.$phase.json" || failed+=("$scene")
@@ -97,7 +97,7 @@ moving_scene() {
   done < <(tr , '\n' <<<"${METHODS:-boxes,i-collide,far,far --offset exact}")
 }
 
-# distances_of SCENE: prints the distances of a scene moved apart, from their records or by running the program.
+# distances_of SCENE: prints the distances of a scene moved apart. Takes a record if there is one, else runs the program.
 distances_of() {
   local diagonals record
   for diagonals in 0 1e-12 1e-3 1 1e3; do

@@ -10,8 +10,8 @@
 #   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
 #                                                    distances of libraries (docs/experiments.md). Minutes on one core.
 #   bash experiments/results.sh stages [SCENE...]    stages.md: what each stage of FAR takes away and costs, on 19 scenes.
-# OPTIONS are those of `farcull experiment`. With --quick headline, cloth and proximity copy nothing. A measurement can be ended at
-# any time; the same call goes on, but a cloth is simulated again from its start. Each commit has a store of its own under build/,
+# OPTIONS are those of `farcull experiment`. With --quick, headline, cloth and proximity copy nothing. A measurement can be ended at
+# any time. The same call continues it, but simulates a cloth again from its start. Each commit has a store of its own under build/,
 # since a store refuses rows of another commit.
 # Exit status: 0; 1 if a method that promises missed a pair or lost a neighbour, or a distance was not exact; 2 if the measurements
 # did not complete.
@@ -47,13 +47,13 @@ status=0
 build/farcull experiment "$study" --out "$out" --resume "$@" || status=$?
 if ((status > 1)); then exit "$status"; fi
 build/farcull report "$out"
-# The page of one study is copied where it has all points of the full size, and no promise was broken.
+# The page of one study is copied only if all points of the full size were measured and no promise was broken.
 if [[ $study == all ]] || { ((status == 0)) && [[ ! $quick ]]; }; then
   call=${0##*/}
   if [[ $study != all ]]; then call+=" $study"; fi
   farcull_keep_report "$page" "$title" "$out/report" "$call"
   if [[ $study == headline ]]; then
-    for copy in README.md docs/paper.md; do  # their table is that of the page
+    for copy in README.md docs/paper.md; do  # these files have the table of the page
       awk -v head='^[|] method [|] two-bunnies' 'NR == FNR { on = $0 ~ head || (on && /^[|]/); if (on) table = table $0 "\n"; next }
         $0 ~ head { printf "%s", table; old = 1 } old && /^[|]/ { next } { old = 0; print }' docs/results/headline.md "$copy" >"$out/copy"
       cat "$out/copy" >"$copy"

@@ -22,7 +22,7 @@ namespace {
 constexpr long kUsualFrames = 30;
 constexpr const char* kUsualView = "-0.45:-0.35:-0.82";
 
-// Runs `parse`; its errors then name `option`, an option of this command.
+// Runs `parse`. If it throws an Error, throws an Error that names `option` instead.
 template <class Parse>
 void as_option(const std::string& option, Parse parse) {
   try {
@@ -34,12 +34,12 @@ void as_option(const std::string& option, Parse parse) {
 
 constexpr Rgba kPaper = {255, 255, 255};
 constexpr double kMargin = 0.04;     // margin around the scene, as a fraction of the picture's size
-constexpr double kZoomMargin = 0.1;  // margin around the collisions
+constexpr double kZoomMargin = 0.1;  // as kMargin, around the collisions
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
-// The scene with each triangle in the colour of its kind. The colliding triangles, `hit`, shine
-// through what hides them.
+// Draws the scene, each triangle in the colour of its kind. The colliding triangles, `hit`, are
+// drawn over the triangles that hide them.
 Image scene_image(const Scene& scene, const Window& window, const std::vector<std::uint8_t>& kind,
                   const std::vector<std::uint32_t>& hit, const GlContext& context) {
   const double line = line_of(window);
@@ -302,7 +302,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContex
   result.missed_triangles = answer.lost.size();
   result.kept = kept.size();
   result.idle = answer.idle.size();
-  // As in `farcull run`, this does not depend on the probes of the device.
+  // guaranteed() does not depend on the probes of the device, as in `farcull run`.
   result.broken = guaranteed(record.options) && !answer.missed.empty();
   const UsedDevice& device = record.found.device;
   result.device = device.gl ? device.gl->renderer : device.cpu ? "cpu" : "none";

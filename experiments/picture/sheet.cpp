@@ -24,10 +24,10 @@ struct Free {
 template <class T>
 using Owned = std::unique_ptr<T, Free>;
 
-// The layout of a text. There is no hinting, so that letters keep their shapes at every size and
+// Returns the layout of a text. Hinting is off, so that letters keep their shapes at every size and
 // place.
 Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
-  constexpr double kCapital = 1493.0 / 2048;  // height of a capital of DejaVu over the em
+  constexpr double kCapital = 1493.0 / 2048;  // a capital's height / the em, in DejaVu
   const Owned<PangoContext> context(
       pango_font_map_create_context(pango_cairo_font_map_get_default()));
   const Owned<cairo_font_options_t> options(cairo_font_options_create());
@@ -75,8 +75,8 @@ void put(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-// A PNG chunk with a text, which cairo does not write. In iTXt, two flags, a language and a
-// translated keyword stand before the text; they are empty here.
+// Returns a PNG chunk with a text; cairo cannot write such chunks. In an iTXt chunk, two flags, a
+// language and a translated keyword stand before the text. These fields are empty here.
 std::string chunk_of(const std::string& key, const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
   const std::string body =

@@ -1,5 +1,5 @@
-// The parts of the compiled module: calls without the lock of the interpreter, arrays of the caller
-// as input, and answers as arrays.
+// What the files of the compiled module share: calls without the lock of the interpreter, arrays of
+// the caller as input, and answers as arrays.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -16,11 +16,11 @@ namespace farcull::python {
 
 namespace py = pybind11;
 
-/// Runs `work` in its own thread, without the lock of the interpreter, with the floating-point
-/// environment that the proofs assume. Meanwhile the calling thread checks for signals every 50 ms.
-/// If a handler of Python raises an exception, as that of Ctrl-C does, the work is asked to stop,
-/// and the exception is thrown when the work has ended. Exceptions of `work` are thrown here.
-/// `work` must not touch Python. Precondition: the caller holds the lock.
+/// Runs `work` in its own thread, without the lock of the interpreter, in the floating-point
+/// environment that the proofs assume. The calling thread waits, and checks for signals every 50
+/// ms. If a signal handler raises an exception (Ctrl-C does), `work` is told to stop, and the
+/// exception is thrown when `work` has ended. Exceptions of `work` are thrown to the caller.
+/// Preconditions: the caller holds the lock; `work` does not touch Python.
 void run_without_gil(const std::function<void()>& work);
 
 /// Runs `work` as run_without_gil() does, and returns its value.
@@ -31,8 +31,9 @@ auto without_gil(const Work& work) {
   return std::move(*out);
 }
 
-/// Marks an object as in use for as long as the Turn lives. Throws farcull.Error if it is marked:
-/// by another thread, or by a call of this thread that a signal handler interrupted.
+/// Marks an object as in use for as long as the Turn lives. Throws farcull.Error if the object is
+/// in use already: by another thread, or by a call of this thread that a signal handler
+/// interrupted.
 class Turn {
  public:
   Turn(std::atomic_flag& used, const char* name);
@@ -44,10 +45,10 @@ class Turn {
   std::atomic_flag& used_;
 };
 
-/// Lets a run stop between its stages.
+/// Returns a Progress that lets a run stop between its stages.
 Progress stopping_progress();
 
-/// Throws farcull.InputError if `input` is true, since an argument is wrong; else farcull.Error.
+/// Throws farcull.InputError if `input` is true (an argument is wrong); otherwise farcull.Error.
 [[noreturn]] void raise(const std::string& where, const std::string& reason,
                         const std::string& remedy, bool input);
 
@@ -60,7 +61,7 @@ class MeshArrays {
              const py::array_t<std::int64_t>& object_starts, const py::array_t<double>& poses);
   MeshArrays(const MeshArrays&) = delete;
   MeshArrays& operator=(const MeshArrays&) = delete;
-  /// Refers to the arrays and to this object.
+  /// The Input points into the arrays and into this object.
   const Input& input() const { return input_; }
 
  private:
@@ -70,7 +71,7 @@ class MeshArrays {
   Input input_;
 };
 
-/// An array (k, 2) from any type of pairs with members a and b.
+/// Returns pairs as an array (k, 2). The type of a pair has members a and b.
 template <class Pairs>
 py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
   py::array_t<std::int64_t> out({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
@@ -82,7 +83,7 @@ py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
   return out;
 }
 
-/// An array (k) of the code of each contact's kind: its index in farcull.KINDS.
+/// Returns an array (k): for each contact, the index of its kind in farcull.KINDS.
 template <class Contacts>
 py::array_t<std::uint8_t> kind_array(const Contacts& contacts) {
   py::array_t<std::uint8_t> out(static_cast<py::ssize_t>(contacts.size()));
@@ -91,7 +92,7 @@ py::array_t<std::uint8_t> kind_array(const Contacts& contacts) {
   return out;
 }
 
-/// Memory of `owner` as a read-only array that keeps the owner alive.
+/// Returns memory of `owner` as a read-only array, which keeps `owner` alive.
 template <class Value>
 py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py::handle owner) {
   py::array_t<Value> out(std::move(shape), data, owner);
@@ -99,8 +100,8 @@ py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py
   return out;
 }
 
-/// Pairs (k, 2) of whole numbers below `triangles`, each with its lower number first. Throws
-/// farcull.InputError naming `name`.
+/// Returns the rows (k, 2) as pairs, each with its lower number first. Throws farcull.InputError
+/// naming `name` if a number is not below `triangles`.
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles);
 

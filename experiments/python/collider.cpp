@@ -30,7 +30,8 @@ py::dict report_of(const Report& report) {
                   "stages"_a = std::move(stages));
 }
 
-// The arrays of kinds and of segments; None for one that was not asked for.
+// Returns the array of kinds and the array of segments; None in place of an array that `asked`
+// lacks.
 std::pair<py::object, py::object> contact_arrays(const std::vector<Contact>& contacts,
                                                  Contacts asked) {
   if (asked == Contacts::none) return {py::none(), py::none()};
@@ -65,7 +66,7 @@ void require_process(pid_t maker, const char* made) {
         "make one in each process", false);
 }
 
-// A Collider or a DistanceFinder, for one thread at a time and for one process.
+// A Collider or a DistanceFinder. One thread at a time may use it, in the process that made it.
 template <class Finder, class Asked>
 class KeptFinder {
  public:
@@ -111,7 +112,8 @@ std::uint8_t feature_code(const std::string& feature) {
   return static_cast<std::uint8_t>((feature[0] == 'e' ? 3 : 0) + (feature.back() - '0'));
 }
 
-// A column for each member of DistanceAnswer; without `exact`, none for `squared`.
+// Returns a column for each member of DistanceAnswer. Without `exact`, the column `squared` is
+// empty.
 py::dict columns_of(const std::vector<DistanceAnswer>& answers, bool exact) {
   const auto count = static_cast<py::ssize_t>(answers.size());
   constexpr py::ssize_t kTwo = 2, kThree = 3;
@@ -150,7 +152,6 @@ py::tuple tuple_of(const Values& values, const Name& name) {
   return py::tuple(out);
 }
 
-// The options of a collider, from the dictionary of _collide.py.
 Options options_of(const py::dict& question) {
   return {.threads = question["threads"].cast<unsigned>(),
           .self = question["all_objects"].cast<bool>(),
@@ -173,7 +174,7 @@ void add_collider(py::module_& module) {
                       const py::array& starts, const py::array& poses) {
         return result_of(kept.find(vertices, triangles, starts, poses), kept.options.contacts);
       });
-  // Codes of kinds are indices into this tuple, for both enumerations.
+  // A kind's code is its index in this tuple. Contact::Kind and ContactKind have the same codes.
   static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
   module.attr("kinds") = tuple_of(kContactKinds, [](ContactKind kind) { return name_of(kind); });
 }

@@ -22,9 +22,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};  // time between checks for signals
 
-// Raises a limit of the GNU C library, up to which free memory stays with the process, by mapping
-// and freeing one large block. Otherwise each call requests the same pages again, which took half
-// of the time of small scenes. A limit that the environment or mallopt() has set stays.
+// Maps and frees one large block. This makes the GNU C library keep more free memory for the
+// process. Otherwise each call requests the same pages again, which took half of the time of small
+// scenes. A limit that the environment or mallopt() has set stays.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -37,8 +37,8 @@ void keep_small_memory() {
 #endif
 }
 
-// The running calls. They are stopped when the interpreter ends, since the process then destroys
-// objects that they use.
+// Lists a call while it runs. When the interpreter ends, it stops all running calls, since the
+// process then destroys objects that these calls use.
 class Running {
  public:
   explicit Running(StoppableCall& call) : call_(call) {
@@ -80,7 +80,7 @@ class Running {
   StoppableCall& call_;
 };
 
-// Waits a moment without the lock of the interpreter; returns whether the call has ended. If the
+// Returns whether the call has ended. Waits up to kLook without the lock of the interpreter. If the
 // interpreter shuts down meanwhile, PyEval_RestoreThread() unwinds this thread. The unwinding would
 // run destructors that touch Python, so the thread sleeps here until the process ends.
 bool ended(StoppableCall& call) {
@@ -181,15 +181,15 @@ constexpr const char* kNotMain =
 
 bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
 
-// Stops all running calls and waits for their end; later calls are stopped as well. To be called
-// when the interpreter ends, with its lock.
+// Stops all running calls and waits for their end. Later calls are stopped as well. Called when the
+// interpreter ends, with the lock of the interpreter.
 void end_calls() {
   const py::gil_scoped_release released;
   Running::end_all();
 }
 
 void fill(py::module_& module) {
-  // Python gives another interpreter an existing module without calling PyInit again.
+  // Another interpreter gets this module without a second call of PyInit, so the package asks here.
   module.def("require_main_interpreter", [] {
     if (!in_main_interpreter()) throw py::import_error(kNotMain);
   });
@@ -197,7 +197,7 @@ void fill(py::module_& module) {
   // becomes a MemoryError.
   py::register_exception_translator(&translate);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters(option_word);  // for records; exceptions name keywords (as_parameters())
+  spell_parameters(option_word);  // in records; as_parameters() does this for exceptions
   add_collider(module);
   add_distances(module);
   add_scenes(module);
@@ -271,7 +271,7 @@ MeshArrays::MeshArrays(const py::array& vertices, const py::array& triangles,
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles) {
-  // The caller has checked that these are whole numbers; those beyond 2^63 become negative.
+  // The caller has checked that these are whole numbers. Numbers from 2^63 on become negative.
   const auto given =
       py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!given || given.ndim() != 2 || given.shape(1) != 2)
@@ -293,7 +293,7 @@ std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& na
 
 }  // namespace farcull::python
 
-// As PYBIND11_MODULE, but refuses other interpreters than the main one first.
+// Does what PYBIND11_MODULE does, but first refuses every interpreter except the main one.
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull();
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull() {
   namespace python = farcull::python;

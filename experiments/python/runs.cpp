@@ -55,7 +55,6 @@ Kept from_arrays(const py::array& vertices, const py::array& triangles, const py
   });
 }
 
-// weld: as parse_weld() takes it; empty: vertices stay as they are.
 SceneArguments arguments_of(const std::vector<std::string>& names, const std::string& weld) {
   SceneArguments out(names);
   if (!weld.empty()) out.weld = weld;
@@ -70,7 +69,7 @@ Kept from_names(const std::vector<std::string>& names, const std::string& weld, 
   });
 }
 
-// A scene that moves, for one thread at a time.
+// A scene that moves. One thread at a time may use it.
 class Frames {
  public:
   Frames(const std::vector<std::string>& names, const std::string& weld, const std::string& range,
@@ -95,7 +94,7 @@ class Frames {
   std::unique_ptr<FrameSource> source_;
 };
 
-// The triangles of a mesh after vertices that are at most the tolerance apart were merged.
+// Merges vertices that are at most the tolerance apart. Returns the triangles of the merged mesh.
 py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
                                   const py::array_t<std::int64_t>& triangles,
                                   const std::string& tolerance) {
@@ -119,7 +118,8 @@ py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
   return out;
 }
 
-// The pairs of objects that two patterns of names select. what: the name of the patterns in errors.
+// Returns the pairs of objects that two patterns of names select. what: names the patterns in
+// errors.
 Ignored pairs_named(const KeptScene& kept, const std::string& first, const std::string& second,
                     const std::string& what) {
   return without_gil([&] {
@@ -134,7 +134,6 @@ Ignored pairs_named(const KeptScene& kept, const std::string& first, const std::
 
 void add_scenes(py::module_& module) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  // (n, 3): a view of the vertices or triangles of a scene.
   const auto rows = [](auto rows_of) {
     return [rows_of](py::object self) {
       const auto& out = (*self.cast<const KeptScene&>().scene).*rows_of;
@@ -188,7 +187,7 @@ struct KeptRecord {
   std::shared_ptr<const Scene> scene;
   Record record;
 
-  // All missed pairs, not only the first ones.
+  // Returns all missed pairs. The record may hold only the first ones.
   std::vector<TrianglePair> missed() const {
     const Accounting& known = record.verification.value();
     if (known.false_negatives <= known.examples.size()) return known.examples;
@@ -200,7 +199,7 @@ struct KeptRecord {
   }
 };
 
-// ignore: pairs of different objects; limit: 0 for none.
+// ignore: pairs of different objects; limit: 0 means no limit.
 RunOptions options_of(const GivenOptions& given, const Ignored& ignore, std::uint64_t limit,
                       bool verify = true, bool kinds = false) {
   RunOptions out{.verify = verify,
@@ -235,7 +234,6 @@ py::object kinds_of(const Record& record, const std::vector<ContactShape>& conta
   return kind_array(contacts);
 }
 
-// The pairs as a list that was read from a file.
 GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   const std::vector<std::uint32_t> owner = owners(scene);
   GivenList out{.name = "pairs", .has_frames = false, .rows = {}, .not_looked_at = {}};
@@ -275,8 +273,8 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
-// The pixels, the texts of the panels, and a page with the same answers; empty unless `page` is
-// true.
+// Returns the pixels, the texts of the panels, and a page with the same answers. Unless `page` is
+// true, the page is empty.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom, int width,
                      int height, const std::string& device, unsigned threads, bool page) {
@@ -318,7 +316,6 @@ struct KeptClash {
   ClashRecord record;
 };
 
-// tolerance: as parse_weld() takes it.
 KeptClash clash_of(const KeptScene& kept, double clearance, const std::string& tolerance,
                    const Ignored& ignore, bool depth, unsigned threads) {
   return without_gil([&] {

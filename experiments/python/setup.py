@@ -1,8 +1,8 @@
 """`pip install --no-build-isolation ./experiments/python`: builds the module with CMake.
 
-FARCULL_BUILD names a build folder of farcull to use, from where pip was called or from the top of the
-sources; default build-python there. CMAKE_ARGS: more arguments for CMake. `pip install -v` shows the
-progress.
+FARCULL_BUILD names the build folder, relative to the folder where pip was called or to the top of the
+sources. The default is build-python at the top of the sources. CMAKE_ARGS: more arguments for CMake.
+`pip install -v` shows the progress.
 """
 
 import os
@@ -29,7 +29,7 @@ def build_folder():
     named = os.environ.get("FARCULL_BUILD")
     if not named:
         return ROOT / "build-python"
-    # pip changes into the folder of this file, and leaves the caller's in PWD.
+    # pip changes into the folder of this file; PWD still names the caller's folder.
     for base in (pathlib.Path(os.environ.get("PWD", ".")), ROOT, pathlib.Path.cwd()):
         if (base / named / "CMakeCache.txt").exists():
             return base / named

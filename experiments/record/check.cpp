@@ -42,7 +42,7 @@ double ns_per_pair(const CheckResult& result) {
              : result.decide_ms * 1e6 / static_cast<double>(result.found.box_pairs);
 }
 
-// "bunny triangle 3 and floor triangle 0".
+// Returns a text such as "bunny triangle 3 and floor triangle 0".
 std::string pair_text(const Scene& scene, const TrianglePair& pair) {
   return place_text(scene, pair.a) + " and " + place_text(scene, pair.b);
 }
@@ -68,7 +68,7 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
   return out;
 }
 
-// Checks a list without a certificate: makes the evidence, which the checker then verifies.
+// Checks a list without a certificate. Makes the evidence; then the checker verifies this evidence.
 CheckResult check_list(const Scene& scene, const std::string& name,
                        std::span<const ListedPair> rows, double clearance) {
   const Stopwatch start;
@@ -86,12 +86,12 @@ CheckResult check_list(const Scene& scene, const std::string& name,
   CheckResult result =
       check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
   remove_ignored(scene, scene.ignored, result.meeting);
-  result.unattested.clear();  // these claims are about a run, and there is none
+  result.unattested.clear();  // such claims are about a run; there was no run
   result.ms = start.ms();
   return result;
 }
 
-// Compares the list with the pairs that meet. The verdict is afterwards about the list too.
+// Compares the list with the pairs that meet. Afterwards the verdict covers the list as well.
 void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
                   SceneCheck& check) {
   CheckResult& result = check.result;

@@ -8,33 +8,32 @@
 
 namespace farcull {
 
-/// A check of one scene: of a certificate, of a list of pairs, or of both.
+/// The outcome for one scene: a certificate, a list of pairs, or both were checked.
 struct SceneCheck {
   std::string certificate;  // a file; empty if a list was checked without a certificate
   std::string list;         // a file; empty if no list was given
   double clearance = 0;
   std::string claimed_sha256;  // the hash of the list that the certificate names
   Certificate::Claims claimed;
-  CheckResult result;                          // also about the list, if one was given
+  CheckResult result;                          // covers the list as well, if there is one
   std::optional<ListDifferences> differences;  // set if a list was given and pairs were decided
   std::vector<std::string> not_looked_at;      // columns of the list that were not read
 };
 
 nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair);
 
-/// The statement that is proved if the verdict is `proved`: "these 12 pairs of the scene meet, and
-/// no others".
+/// Returns what the verdict `proved` proves: "these 12 pairs of the scene meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// The beginning of this statement, for any number of pairs.
+/// Returns the beginning of such a statement.
 std::string proved_text(std::size_t pairs, double clearance);
-/// The end of this statement; empty if it is about all pairs. self: an object is tested against
-/// itself; ignores: pairs of objects are ignored.
+/// Returns the end of such a statement; empty if the statement is about all pairs. self: an object
+/// is tested against itself; ignores: pairs of objects are ignored.
 std::string proved_limits(double clearance, bool self, bool ignores);
-/// The verdict with its reason, and the pair that it is about: one line or two.
+/// Returns one line or two: the verdict, its reason, and the pair that the reason is about.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 std::string check_text(const Scene& scene, const SceneCheck& check);
-/// Lines about claims that no check can prove, and about unusual arithmetic of the caller; may be
-/// empty.
+/// Returns lines about claims that no check can prove, and about unusual arithmetic of the caller;
+/// may be empty.
 std::string unattested_text(const SceneCheck& check);
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check);
@@ -49,22 +48,22 @@ class FrameVerdicts {
   Verdict in_all() const;
   /// wanted: how many frames were asked for.
   nlohmann::ordered_json json(long wanted) const;
-  /// proved: the statement for each frame, if all frames are proved.
+  /// proved: the statement to give if all frames are proved.
   std::string text(const std::string& proved) const;
 
  private:
   std::uint64_t of(Verdict verdict) const { return count_[static_cast<std::size_t>(verdict)]; }
   std::uint64_t all() const { return count_[0] + count_[1] + count_[2]; }
 
-  std::array<std::uint64_t, 3> count_{};        // one number for each Verdict
-  std::array<std::optional<long>, 3> first_{};  // one frame for each Verdict
+  std::array<std::uint64_t, 3> count_{};        // how many frames have each Verdict
+  std::array<std::optional<long>, 3> first_{};  // the first frame with each Verdict
   std::uint64_t listed_ = 0;
 };
 
-/// Checks a certificate, a list of pairs, or both; the verdict is then about both. A list alone is
-/// proved or refuted. file: the certificate's name, "" for none; rows: those of the list that are
-/// about this scene. Throws Error if the list names objects or triangles that the scene does not
-/// have. Precondition: a certificate or a list is given.
+/// Checks a certificate, a list of pairs, or both; the verdict covers all that was checked. A list
+/// alone is proved or refuted. file: the name of the certificate, or ""; rows: the rows of the list
+/// that are about this scene. Throws Error if the list names objects or triangles that the scene
+/// does not have. Precondition: a certificate or a list is given.
 SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows);

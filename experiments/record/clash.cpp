@@ -24,8 +24,8 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-/// How the surfaces meet, by the strongest kind of contact: "faces lie on each other in 24 pairs
-/// ...".
+/// Returns how the surfaces meet, by the strongest kind of contact: "faces lie on each other in 24
+/// pairs of triangles".
 std::string contact_words(const ClashRow& row) {
   using enum ContactKind;
   std::uint64_t n = 0;
@@ -41,7 +41,7 @@ std::string contact_words(const ClashRow& row) {
   return how + " in " + counted(n, "pair of triangles", "pairs of triangles");
 }
 
-/// An id of two parts that depends only on their names, not on their order.
+/// Returns an id of two parts. It depends on their names, but not on the order of the names.
 std::string id_of(std::string a, std::string b) {
   if (b < a) std::swap(a, b);
   return sha256(a + '\n' + b).substr(0, 8);
@@ -55,7 +55,7 @@ struct CsvLine {
   std::vector<std::string> cells;
 };
 
-/// Lines of a CSV as csv_cell() writes it, without empty lines.
+/// Splits a CSV, as csv_cell() writes it, into lines. Leaves out empty lines.
 std::vector<CsvLine> csv_lines(const std::string& text) {
   std::vector<CsvLine> out;
   std::istringstream in(text);
@@ -102,7 +102,8 @@ bool is_hidden(const auto& row, const ClashTable& table) {
   return row.verdict == ClashVerdict::touch && !row.ignored && !lists_touches(table);
 }
 
-/// Why a clash or a containment has no depth; empty if it has one, and for other verdicts.
+/// Returns why a clash or a containment has no depth. Empty if the row has a depth or another
+/// verdict.
 std::string no_depth_words(const Scene& scene, const ClashRow& row) {
   const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
   if (!deep || row.depth) return "";
@@ -164,7 +165,7 @@ std::string tolerance_text(const ClashRecord& record, const ClashTable& table) {
                      table.unit.empty() ? "" : " " + table.unit);
 }
 
-/// "2 new, 5 same, 1 gone".
+/// Returns a text such as "2 new, 5 same, 1 gone".
 std::string compared_text(const ClashComparison& compared) {
   const auto same = static_cast<std::size_t>(std::ranges::count(compared.same, true));
   return fmt::format("{} new, {} same, {} gone{}", grouped(compared.same.size() - same),
@@ -174,7 +175,7 @@ std::string compared_text(const ClashComparison& compared) {
                          : "");
 }
 
-/// Lines about likely faults of the input: copies of a part, and parts in different units.
+/// Returns lines about likely faults of the input: copies of a part, and parts in different units.
 std::string hints_text(const Scene& scene, const ClashRecord& record) {
   constexpr std::size_t kShown = 3;
   std::string out;
@@ -194,7 +195,7 @@ std::string hints_text(const Scene& scene, const ClashRecord& record) {
   return out;
 }
 
-/// "412.0 ms = read 80.1 + pairs 31.0 + ...".
+/// Returns a text such as "412.0 ms = read 80.1 + pairs 31.0 + ...".
 std::string time_text(const ClashRecord& record) {
   using enum StageKind;
   std::vector<std::pair<std::string, double>> parts = {{"pairs", 0}};
@@ -284,7 +285,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
   if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
-  std::set<Row> old, forgiven;  // all rows of the file, and those of pairs that it says are ignored
+  std::set<Row> old, forgiven;  // all rows of the file; its rows of ignored pairs
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
@@ -304,8 +305,8 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   }
   std::map<std::string, std::uint32_t> numbers;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) numbers[scene.objects[o].name] = o;
-  // True if the record would have no row of this pair: it was not examined, or it is near and
-  // ignored.
+  // Returns true if the record has no row for this pair: the pair was not examined, or it is near
+  // and ignored.
   const auto left_out = [&](const std::string& name_a, const std::string& name_b, bool near) {
     if (!numbers.contains(name_a) || !numbers.contains(name_b)) return false;
     const auto [a, b] = std::minmax({numbers[name_a], numbers[name_b]});

@@ -15,11 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
-// The words of DistancePairs and of WhichInside. `unknown` has none: the objects meet.
+// Words for DistancePairs, and words for WhichInside. WhichInside::unknown has no word.
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 
-/// The numbers of the triangles within their objects, from 0.
 std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
   return {d.triangles.a - scene.objects[d.objects.a].first_triangle,
           d.triangles.b - scene.objects[d.objects.b].first_triangle};
@@ -78,7 +77,8 @@ std::string inside_cell(const Distance& d) {
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
-/// A line with the least distance of all answers, and its objects; empty if there is one answer.
+/// Returns a line with the least distance of all answers and its two objects. Empty if there are
+/// fewer than two answers.
 std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
   if (distances.size() < 2) return "";
   const auto least = std::min_element(

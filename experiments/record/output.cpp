@@ -89,7 +89,7 @@ Json contacts_json(const Record& record) {
   return out;
 }
 
-// Appends six cells: the ends of a segment, or a point twice.
+// Appends six cells: the two ends of a segment, or a point twice. Other shapes get empty cells.
 void append_ends(const ContactShape& shape, std::string& out) {
   for (const Vec3& end : shape.ends) {
     for (const double x : end) {
@@ -100,8 +100,8 @@ void append_ends(const ContactShape& shape, std::string& out) {
   }
 }
 
-// Appends a cell with the corners of the polygon that two triangles have in common: all
-// coordinates, with blanks between them.
+// Appends a cell with the corners of the polygon that two triangles have in common. Blanks separate
+// the coordinates.
 void append_polygon(const Scene& scene, const TrianglePair& pair, const ContactShape& shape,
                     std::string& out) {
   out += ',';
@@ -139,8 +139,8 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
   return lines;
 }
 
-// A range of Collisions::pairs, and one of the colliding neighbours that come between these pairs
-// in the order of the rows.
+// A range of Collisions::pairs, and a range of Collisions::neighbour_pairs: the neighbours whose
+// rows come between the rows of these pairs.
 struct RowRange {
   std::size_t pairs = 0, pairs_end = 0;
   std::size_t neighbours = 0, neighbours_end = 0;
@@ -204,7 +204,8 @@ class Rows {
   const PairListRows rows_;
 };
 
-// Divides the sorted pairs and neighbours into ranges of at most kRows of each, in order.
+// Divides the sorted pairs and neighbours into ranges, in order. A range has at most kRows pairs
+// and at most kRows neighbours.
 std::vector<RowRange> ranges_of(const Collisions& all) {
   constexpr std::size_t kRows = std::size_t{1} << 15;
   const std::vector<TrianglePair>&pairs = all.pairs, &neighbours = all.neighbour_pairs;
@@ -364,7 +365,6 @@ void give_pairs_rows(const Scene& scene, const Record& record, const std::string
                      const PairColumns& columns, const TextSink& sink) {
   const Rows rows(scene, record, before, columns);
   const std::vector<RowRange> ranges = ranges_of(record.collisions);
-  // Each thread fills the same text again and again, which saves allocations.
   std::vector<std::string> texts(chunks_for(ranges.size(), 1));
   for (std::size_t from = 0; from < ranges.size(); from += texts.size()) {
     const std::size_t count = std::min(texts.size(), ranges.size() - from);

@@ -20,8 +20,8 @@
 
 namespace farcull {
 
-/// A value of a record as JSON: an object for a struct that has fields, the word of an enumeration,
-/// null for an empty optional, else the value itself. A number that is not finite becomes null.
+/// Returns a value of a record as JSON. A struct with fields becomes an object, an enumeration its
+/// word, an empty optional null, a number that is not finite null. Other values stay as they are.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -44,7 +44,7 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   return out;
 }
 
-/// A JSON object with these members of a struct, by their names and in this order.
+/// Makes a JSON object with the given members of a struct. The names and the order are kept.
 #define FARCULL_JSON(value, ...)                                                \
   [&] {                                                                         \
     nlohmann::ordered_json out;                                                 \
@@ -72,130 +72,133 @@ inline nlohmann::ordered_json text_json(const std::string& text) {
 
 inline nlohmann::ordered_json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-/// The record as JSON. Keys keep their order, so that the same run gives the same text.
+/// Returns the record as JSON. Keys keep their order, so the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
 nlohmann::ordered_json gl_json(const GlInfo& gl);
-/// The number of threads of a software device; null for other devices.
 nlohmann::ordered_json threads_json(const GlInfo& gl);
 
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// NotAsked (verify/certificate/certificate.h) of the scene: how many objects are not tested
-/// against themselves, how many pairs are inside them, and the objects as ranges (first and last).
+/// Returns NotAsked (verify/certificate/certificate.h) of the scene: how many objects are not
+/// tested against themselves, how many pairs of triangles are inside such objects, and these
+/// objects as ranges (first and last).
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
                                   const std::string& hash);
 nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
-/// For each triangle of a pair: its object, its number in the object, and its face of the file.
+/// Returns for each triangle of a pair its object, its number in the object, and its face in the
+/// file.
 nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
-/// A text as a cell of a CSV: in quotes if it has to be.
+/// Returns a text as a cell of a CSV, in quotes if the text needs them.
 std::string csv_cell(const std::string& text);
 
-/// Columns of pairs_csv() besides those that every list has, and which rows it writes.
+/// The additional columns of pairs_csv(), and the choice of its rows.
 struct PairColumns {
-  bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
-  bool contacts = false;  // contact: the kind; the record must have the kinds
-  bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of the common segment or point, in world
-                          // units; else empty. polygon: the corners of a common polygon; else
-                          // empty. The record must have segments
-  bool names = false;     // name_a, name_b: of the objects
+  bool faces = false;     // face_a, face_b: 0-based in the file of the object
+  bool contacts = false;  // contact: the kind. Precondition: the record has kinds
+  // Columns x0,y0,z0,x1,y1,z1: the ends of the common segment, or the common point twice, in world
+  // units. Column polygon: the corners of the common polygon. Cells that do not apply are empty.
+  // Precondition: the record has segments.
+  bool segments = false;
+  bool names = false;                    // name_a, name_b: the names of the objects
   std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
   const ListNumbers* numbers = nullptr;  // null unless the scene is a part of another scene
 };
 
-/// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; with
-/// colliding neighbours if an object is tested against itself. The wanted columns come at the end.
+/// Returns the colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once. If
+/// an object is tested against itself, colliding neighbours are included. `columns` come at the
+/// end.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
 /// Gives pairs_csv() to `sink` part by part, so that the whole text is never in memory. All cores
 /// make the parts.
 void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
                     const TextSink& sink);
-/// The header and the rows of pairs_csv(); each row begins with `before`.
+/// Return the header and the rows of pairs_csv(). Each row begins with `before`.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
 
-/// The certificate of the run: its claims about every pair of the scene, with evidence. It has no
-/// times, so the same run gives the same text. whole: as of make_certificate().
+/// Returns the certificate of the run: claims about every pair of the scene, with evidence. The
+/// certificate has no times, so the same run gives the same text. whole: as in make_certificate().
 Certificate certificate_of(const Scene& scene, const Record& record,
                            const WholeScene* whole = nullptr);
 
-/// One line for each stage: whether it runs, is left out or depends on pixels, and why.
+/// Returns a line for each stage: whether it runs, is left out or depends on pixels, and why.
 std::string plan_table(const Scene& scene, const Plan& plan);
-/// The plan as JSON (docs/record.md, "Plans"). misses: the predicted misses of the method.
+/// Returns the plan as JSON (docs/record.md, "Plans"). misses: the predicted misses of the method.
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan,
                                  const std::optional<MissPrediction>& misses = {});
 
-/// The plan's decision about a stage: "runs", "left out" or "depends".
 std::string decision_of(const Stage& stage);
 
-/// Distances as JSON (docs/proximity.md). seed: of a random scene.
+/// Returns distances as JSON (docs/proximity.md). seed: the seed of a random scene.
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// The distances as CSV: the names of the columns, and a row for each pair that begins with
+/// Return the distances as CSV: the names of the columns; a row for each pair. Each row begins with
 /// `before`.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
 
-/// The distances (only the first of many), the stages and the accounting.
+/// Returns a table with the first distances, the stages and the accounting.
 std::string distances_table(const Scene& scene, const DistanceRecord& record);
 
 std::string verdict_text(const DistanceAccounting& accounting);
 std::string accounting_sum(const DistanceAccounting& accounting);
 
-/// The differences between the rows of a record and those of an earlier CSV. Rows are the same if
-/// they name the same two parts, in any order, and have the same verdict.
+/// The differences between the rows of a record and the rows of an earlier CSV. Two rows are the
+/// same if they name the same two parts, in any order, with the same verdict.
 struct ClashComparison {
   struct Gone {
     std::string a, b, verdict;
   };
-  std::vector<bool> same;        // for each row of the record: whether the file has it
-  std::vector<Gone> gone;        // rows of the file that the record lacks
-  std::uint64_t unexamined = 0;  // other rows of the file: the record did not examine them
+  std::vector<bool> same;        // for each row of the record: true if the CSV has the row
+  std::vector<Gone> gone;        // rows of the CSV that the record lacks
+  std::uint64_t unexamined = 0;  // number of rows of the CSV whose pair was not examined
 };
-/// text: the CSV; name: of its file. Throws Error if clash_csv() does not write such a text.
+/// text: the CSV; name: the name of its file. Throws Error if clash_csv() cannot have written it.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name);
 
 struct ClashTable {
-  std::vector<ClashVerdict> failing = {};  // passed to is_clean(); `touch` here also lists touches
-  std::string unit = {};                   // unit of the lengths, such as "mm"; empty: unknown
+  std::vector<ClashVerdict> failing =
+      {};                 // passed to is_clean(); with `touch`, the table lists touches
+  std::string unit = {};  // unit of the lengths, such as "mm"; empty: unknown
   std::optional<ClashComparison> compared = {};  // differences to an earlier CSV
 };
 
-/// For people: the summary, then the rows. Lengths have six digits, since the coordinates of a mesh
-/// file may be rounded to floats.
+/// Returns a text for people: the summary, then the rows. Lengths have six digits, since the
+/// coordinates of a mesh file may be rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
-/// The words of a row after its verdict, such as the kinds of contact.
+/// Returns the words after the verdict of a row, such as the kinds of contact.
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
-/// Whether no pair is a clash, contained, unknown or one of `failing`, and every pair that was
-/// asked for was examined.
+/// Returns true if every wanted pair was examined, and no pair has the verdict clash, contained or
+/// unknown, or a verdict in `failing`.
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
 
-/// A row for each pair that is not clear, numbers with all digits; then a row for each pair that is
-/// gone (ClashComparison), with only its names and its old verdict.
+/// Returns a row for each pair that is not clear; numbers have all digits. Then follows a row for
+/// each of ClashComparison::gone, with only the names and the old verdict.
 std::string clash_csv(const Scene& scene, const ClashRecord& record, const ClashTable& table = {});
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
                                   const ClashTable& table = {});
 
-/// A pair of parts over frames (`farcull clash --frames`). Optional values are those of the frames
-/// in which the pair is listed with such a value.
+/// A pair of parts over frames (`farcull clash --frames`). An optional value is empty if no frame
+/// lists the pair with such a value.
 struct WorstClash {
   std::string name_a, name_b, id;
   ClashVerdict verdict = ClashVerdict::clear;  // the most serious one
   bool ignored = false;
-  long frames = 0, first = 0, last = 0;  // the frames with this verdict: how many, and the ends
-  std::optional<double> depth = {};      // the largest lower bound, if depths are asked for
-  std::optional<double> distance = {};   // the least one; 0 if the surfaces meet
+  long frames = 0, first = 0, last = 0;  // number, first and last of the frames with this verdict
+  std::optional<double> depth = {};      // the largest lower bound
+  std::optional<double> distance = {};   // the least distance; 0 if the surfaces meet
   std::optional<long> deepest = {}, nearest = {};  // the first frame with `depth`, `distance`
   FARCULL_FIELDS(name_a, name_b, id, verdict, ignored, frames, first, last, depth, deepest,
                  distance, nearest)
@@ -209,12 +212,12 @@ class ClashFrames {
 
   struct Report {
     nlohmann::ordered_json head, frame, summary;  // parts of the JSON, like those of FrameReport
-    std::string csv;                              // clash_csv() after a column `frame`
+    std::string csv;                              // clash_csv() with a first column `frame`
     std::string text;                             // the number of pairs by verdict
   };
-  /// The report of a frame; the first one begins with the headers of CSV and text.
+  /// Returns the report of a frame. In the first report, `csv` and `text` begin with their headers.
   Report add(const Scene& scene, const ClashRecord& record, const ClashTable& table, long frame);
-  /// For people: the pairs of all frames, the most serious first.
+  /// Returns a text for people: the pairs of all frames, the most serious first.
   std::string text(const ClashTable& table) const;
 
  private:

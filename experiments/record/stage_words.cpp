@@ -1,4 +1,4 @@
-// The words of kinds are a table, those of reasons and steps are switches.
+// The words of kinds are in a table; the words of reasons and steps are in switches.
 #include "experiments/record/stage_words.h"
 
 #include <array>

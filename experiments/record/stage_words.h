@@ -5,17 +5,16 @@
 
 namespace farcull {
 
-/// "cull triangles z, round 2".
+/// Returns a name such as "cull triangles z, round 2".
 std::string name_of(const Stage& stage);
-/// The reason in words, without a full stop; empty for Reason::none.
+/// Returns the reason in words, without a full stop; empty for Reason::none.
 std::string reason_of(const Stage& stage);
-/// "objects", "clusters of 32", "triangles"; empty for kNoLevel.
+/// Returns "objects", "clusters of 32" (or another number) or "triangles"; empty for kNoLevel.
 std::string level_name(std::uint32_t level);
-/// "triangles", "pairs" or "".
 std::string to_string(Unit unit);
-/// Why a run used no device. Precondition: the run used none.
+/// Returns why a run used no device. Precondition: the run used no device.
 std::string no_device_reason(const std::vector<Stage>& trace);
-/// "culling along z, round 2", or the text of the step.
+/// Returns the text of the step, or words such as "culling along z, round 2".
 std::string text_of(const ProgressStep& step);
 
 }  // namespace farcull

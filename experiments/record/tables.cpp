@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kExamplesShown = 5;
 
-// Wraps the lines of an answer, which are shorter than those of tables.
+// Wraps the lines of an answer. They are shorter than the lines of tables.
 std::string answer(const std::string& text) {
   return wrapped(text, std::min<std::size_t>(80, text_columns()));
 }
@@ -65,7 +65,7 @@ std::string views_text(const std::vector<ViewReport>& views) {
   return text + " px";
 }
 
-// The radius of the view with the largest budget, and the terms of the budget.
+// Returns a line with the radius of the view with the largest budget, and the terms of this budget.
 std::string radius_line(const Record& record) {
   const ViewReport* view = widest_budget(record.found.views());
   if (!fattens(record.options.method) || view == nullptr) return "";
@@ -84,26 +84,26 @@ std::string radius_line(const Record& record) {
   return line + "\n";
 }
 
-// A row of the stage table: one stage, the stages of one view in the first round, or the stages of
-// all later rounds, in which little happens.
+// A row of the stage table. It stands for one stage, for all stages of one view in the first round,
+// or for all stages of the later rounds, in which little happens.
 struct Row {
-  std::string key;  // stages with the same key share the row; empty: one stage
+  std::string key;  // stages with the same key share a row; empty: the row has one stage
   std::string name;
   std::string note;
-  std::vector<std::string> views;  // views of later rounds; or the names of left-out stages
-  Stage sum;  // of all its stages: the sum of ms, the first `in`, the last `out`
+  std::vector<std::string> views;  // views of later rounds, or names of stages that were left out
+  Stage sum;                       // the sum of ms of the stages, the first `in`, the last `out`
 };
 
-// The key of the row of a stage: its view, or "later rounds"; empty: the stage has a row of its
-// own.
+// Returns the key of a stage's row: the view, or "later rounds". Empty if the stage has a row of
+// its own.
 std::string key_of(const Stage& stage) {
   if (stage.round == 0) return "";
   if (stage.round == 1 && stage.kind == StageKind::agreement) return "";
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
-// Adds a row for a stage that was left out. If the row before has the same reason, adds the stage
-// to that row.
+// Adds a stage that was left out: to the last row, if that has the same reason, otherwise as a new
+// row.
 void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
   if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
@@ -115,7 +115,6 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
 }
 
-// Adds a stage of a round to its row.
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
@@ -198,7 +197,8 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-// How many pairs a smaller radius would lose; empty if that was not asked.
+// Returns a line with how many pairs a smaller radius would lose; empty if the record has no such
+// numbers.
 std::string risk_line(const Record& record) {
   if (!record.risk) return "";
   const auto& [smaller, bare] = *record.risk;
@@ -209,7 +209,8 @@ std::string risk_line(const Record& record) {
                                  : ": this run does not test the radius");
 }
 
-// The kinds of contact that occur, as in "12 crossing + 3 touch-vertex"; empty if not asked for.
+// Returns the kinds of contact that occur, such as "12 crossing + 3 touch-vertex"; empty if the run
+// determined no kinds.
 std::string contacts_line(const Record& record) {
   if (record.options.contacts == ContactDetail::none) return "";
   std::string text;

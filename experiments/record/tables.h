@@ -5,7 +5,8 @@
 
 namespace farcull {
 
-/// The view with the largest budget, which texts quote. Null if no view was drawn.
+/// Returns the view with the largest budget; texts give the numbers of this view. Null if no view
+/// was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
 /// The object of a triangle, and the number of the triangle in the object.
@@ -13,74 +14,71 @@ struct TrianglePlace {
   std::uint32_t object = 0, triangle = 0;
 };
 TrianglePlace place_of(const Scene& scene, std::uint32_t triangle);
-/// "bunny triangle 3".
+/// Returns a text such as "bunny triangle 3".
 std::string place_text(const Scene& scene, std::uint32_t triangle);
 
 /// Why a scene has no pair of triangles to test.
 struct NothingToTest {
-  std::string reason;      // such as "the scene is one object, and ..."; empty: it has a pair
+  std::string reason;      // "the scene is one object, and ..."; empty if there is a pair
   bool with_self = false;  // the scene would have a pair with --self
 };
 NothingToTest nothing_to_test(const Scene& scene);
 
-/// The line that says which method is the default and names the others; empty if the user named a
+/// Returns a line that names the default method and the other methods. Empty if the user named a
 /// method.
 std::string default_method_line(const RunOptions& options);
 
 /// The words for a drawing method that did not draw, since boxes left nothing.
 inline constexpr const char* kNothingToDraw = "nothing left to draw";
-/// Why a drawing method did not draw, such as kNothingToDraw; empty if it drew, and for other
-/// methods.
+/// Returns why a drawing method did not draw, such as kNothingToDraw. Empty if the method drew, or
+/// if it is no drawing method.
 std::string not_drawn_text(const Record& record);
-/// The line that names a faster method than a guaranteed one that draws on the cores of a CPU
-/// (docs/results/stages.md); empty for other methods.
+/// If the method is guaranteed and draws on the cores of a CPU, returns a line that names a faster
+/// method (docs/results/stages.md). Otherwise returns an empty text.
 std::string faster_line(const RunOptions& options);
 
-/// "298 pairs", or with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62 of
-/// neighbours".
+/// Returns "298 pairs"; with `self` (an object is tested against itself) "1,643 pairs = 1,581 + 62
+/// of neighbours".
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);
 
-/// Pairs that the scene leaves out (verify/certificate/certificate.h): "12 pairs of triangles
-/// inside a and b"; empty if it leaves out none.
+/// Returns a text about pairs that the scene leaves out (verify/certificate/certificate.h): "12
+/// pairs of triangles inside a and b". Empty if the scene leaves out no pairs.
 std::string not_asked_text(const Scene& scene);
-/// A whole line with this text and the `options` that would ask about these pairs; empty if the
-/// scene leaves out none.
+/// Returns a line with not_asked_text() and the `options` that include these pairs. Empty if the
+/// scene leaves out no pairs.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
 
-/// ", 2 polygons folded: face 7 of fin, face 9 of fin": polygons of a file that are not simple;
-/// empty if there are none.
+/// Returns a text about polygons of a file that are not simple: ", 2 polygons folded: face 7 of
+/// fin, face 9 of fin". Empty if there are no such polygons.
 std::string folded_text(const Scene& scene);
-/// The name of the scene, and how many objects and triangles it has.
 std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles);
-/// Says how many rows of a table are not shown; empty if all are.
+/// Returns a line with the number of rows that a table does not show; empty if it shows all rows.
 std::string more_line(std::size_t all, std::size_t shown);
 
-/// The lines that say what was run, on which device, and what was not tested.
+/// Returns lines that say what was run, on which device, and what was not tested.
 std::string run_heading(const Scene& scene, const Record& record);
 
-/// A row for each stage: its time, how many items entered and were left, and its reason.
+/// Returns a row for each stage: its time, how many items it got and left, and its reason.
 std::string stage_table(const std::vector<Stage>& stages);
 
-/// The answer of one run, in lines of at most 80 columns if the words allow it: the pairs, the
-/// accounting, the method and the device. verdict: lines of the caller, put before the accounting.
+/// Returns the answer of one run: the pairs, the accounting, the method and the device. Lines have
+/// at most 80 columns if the words allow it. verdict: lines to put before the accounting.
 std::string run_answer(const Scene& scene, const Record& record, const std::string& verdict = "");
-/// The lines that run --verbose adds: the views, the radius, and a row for each stage, also for
-/// those that were left out. The stages of a view share a row, and so do all rounds after the
-/// first.
+/// Returns the lines that run --verbose adds: the views, the radius, and the stages, with stages
+/// that were left out. The stages of a view share a row. All rounds after the first share a row.
 std::string run_details(const Record& record);
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
-/// The verdict of an accounting, in one line without a newline: "verified: no colliding pair was
+/// Returns the verdict of an accounting, a line without a newline: "verified: no colliding pair was
 /// culled, 26,214,400 pairs accounted for".
 std::string verdict_text(const Accounting& accounting);
 
-/// The number of pairs, and how many are in each class: two lines.
 std::string accounting_sum(const Accounting& accounting);
 
 /// A method in a comparison.
 struct Compared {
-  Record record;                     // the run with the median time, cull + exact
-  double least_ms = 0, most_ms = 0;  // the extremes of all its runs
+  Record record;                     // the run whose time (cull + exact) is the median
+  double least_ms = 0, most_ms = 0;  // the extremes of all runs
   std::size_t runs = 1;
 };
 std::string comparison_table(const Scene& scene, const std::vector<Compared>& rows);

@@ -1,8 +1,8 @@
 """`python3 report DIR CONTEXT [--no-pictures] [--device DEVICE]`: writes DIR/report. `farcull report` starts it, after
 it has checked the store in DIR. CONTEXT is JSON: the program, its commit, the studies and constants.
 
-The folder appears whole or not at all, in place of an earlier report; another folder of that name is left alone. Exit
-status: 0 done; 1 a promise is broken, and the report says so; 2 nothing was made, and a line says why.
+The folder DIR/report replaces an earlier report, and is complete or missing. A folder of that name which is no report is
+left alone. Exit status: 0 done; 1 a promise is broken, and the report says so; 2 no report was made, and a line says why.
 """
 import argparse
 import datetime
@@ -16,14 +16,14 @@ import signal
 import subprocess
 import sys
 
-# A row that promises breaks its promise if one of these counts is above 0. A contestant also breaks it by no answer.
+# A row that promises breaks its promise if one of these counts is above 0. Some counts are about missing answers.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
-FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # the order of chapters, else that of the program
+FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # first and last chapters; the program orders the rest
 
 
 class Refusal(Exception):
-    """An error: where, what is wrong there, and what the user can do next."""
+    """An error: its place, what is wrong there, and what the user can do next."""
 
     def __init__(self, where, reason, remedy):
         super().__init__(f"{where}: {reason}; {remedy}")
@@ -54,7 +54,7 @@ except ImportError as error:
 # ---- the folder of the report
 
 def check_place(place):
-    """An earlier report may be replaced, nothing else."""
+    """Raises Refusal if the place holds anything but an earlier report or an empty folder."""
     if not os.path.lexists(place):
         return
     try:
@@ -66,13 +66,13 @@ def check_place(place):
 
 
 class Unfinished:
-    """The folder .report-unfinished, in which a report is made. publish() puts it in place; without that it is removed in
-    the end. The results are locked meanwhile: no other process makes a report of them, so what a killed process left can
-    be removed."""
+    """The folder .report-unfinished, in which a report is made. publish() puts the folder in place; an unpublished folder
+    is removed in the end. A lock keeps other processes from making a report of the same results, so folders that a killed
+    process left can be removed."""
 
     def __init__(self, results):
         self.place, self.path, self.old = (results / name for name in ("report", ".report-unfinished", ".report-old"))
-        self.lock = os.open(results, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)  # ends with the process
+        self.lock = os.open(results, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)  # the lock ends with the process
 
     def __enter__(self):
         try:
@@ -121,7 +121,7 @@ class Reporter:
             print(f"\r\033[K{what}", end="", file=sys.stderr, flush=True)
 
     def fill(self, study):
-        """The chapter of a study, with its broken promises first."""
+        """Makes the chapter of a study, with its broken promises first."""
         names = [known["name"] for known in self.context["studies"]]
         if study.name not in names:
             raise Refusal("report", f"'{study.name}' is no study that this program reports",
@@ -164,7 +164,7 @@ class Reporter:
         self.counts["table"] += len(chapter.tables)
 
     def picture(self, picture, root):
-        """Adds a picture, and the promises that are broken in it."""
+        """Makes a picture. Adds the promises that were broken in it."""
         self.say("picture " + picture.name)
         out, path = pages.DrawnPicture(picture), root / "pictures" / (picture.name + ".png")
         try:
@@ -180,7 +180,7 @@ class Reporter:
         return out
 
     def run_picture(self, picture, path):
-        """Runs `farcull picture`; returns its text about broken promises."""
+        """Runs `farcull picture`. Returns what it printed about broken promises."""
         device = ["--device", self.arguments.device] if self.arguments.device is not None else []
         done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, "-o", path],
                               capture_output=True, stdin=subprocess.DEVNULL, text=True, errors="replace")
@@ -203,7 +203,7 @@ class Reporter:
 
 
 def write(path, content):
-    """Writes a text, or bytes."""
+    """Writes a file; the content is a text or bytes."""
     try:
         path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"))
     except OSError as error:

@@ -1,5 +1,5 @@
 """`farcull compare ... --figure FILE.svg` becomes `python3 compare_figure.py FILE.svg STATUS`, with the rows of `--csv` on
-standard input. Draws missed pairs against time, and ends with the status; with 2 if there is no figure."""
+standard input. Draws missed pairs against time. The exit status is STATUS, or 2 if no figure can be made."""
 import logging
 import os
 import sys
@@ -15,8 +15,8 @@ except ImportError as missing:
 
 
 def named(row, rows):
-    """A row without its resolution; an offset or a radius is named where rows differ in it. A radius stands for far, so
-    that each has a colour of its own (draw.py)."""
+    """Returns the name of a row without its resolution. The name has the offset or the radius if rows differ in it. A radius
+    replaces the name of the method, so that each radius has its own colour (draw.py)."""
     offset, radius = (getattr(row, of) if rows[of][rows[of] != ""].nunique() > 1 else "" for of in ("offset", "radius"))
     return " ".join(part for part in ("" if radius else row.method, row.form, offset and f"{offset} offset",
                                        radius and f"radius {radius}") if part)

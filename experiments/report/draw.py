@@ -1,8 +1,8 @@
 """Figures as files: NAME.svg, NAME.pdf and their numbers as NAME.csv, drawn by matplotlib.
 
-matplotlib places panels, and keeps text from overlapping. Here are the rules for sizes, ticks and looks. Colours are
-those of Okabe and Ito (2008) and of Tol's "muted" scheme, which differ for any colour vision; dashes and markers differ
-in grey too. A name that begins with a method has the method's colour in every figure.
+matplotlib places panels, and keeps text from overlapping. This file has the rules for sizes, ticks and looks. Colours are
+from Okabe and Ito (2008) and from Tol's "muted" scheme; readers with any colour vision can tell them apart. Dashes and
+markers can be told apart in grey. A name that begins with a method has the method's colour in every figure.
 """
 import html
 import io
@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 from estimates import grouped, sentence  # noqa: E402
 
-# Figures as a journal prints them: text of 8 pt at the width at which they are made. Files are the same for the same numbers.
+# Figures fit a journal: text has 8 pt in a figure of printed width. The same numbers give the same files.
 matplotlib.rcParams.update({
     "font.family": "DejaVu Sans", "text.parse_math": False, "axes.unicode_minus": True, "lines.solid_capstyle": "butt",
     **dict.fromkeys(("font.size", "axes.titlesize", "axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 8),
@@ -31,11 +31,11 @@ matplotlib.rcParams.update({
         ("major.size", 2.5), ("minor.size", 1.2), ("major.pad", 2))},
     "svg.hashsalt": "farcull", "svg.fonttype": "none", "pdf.fonttype": 42})
 
-DOUBLE, SINGLE = 504.0, 244.0  # points: the widths of two columns of a journal and of one, 178 and 86 mm
+DOUBLE, SINGLE = 504.0, 244.0  # points: two columns of a journal, 178 mm; one column, 86 mm
 LINE = 11.0         # points: distance of lines of text
 DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DASHES = ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
-MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank marks a hollow one
+MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # with a blank: hollow
 KNOWN = [  # the first entry whose words are in a name applies
     ("boxes", "#009e73", 0, "^"), ("farcull", "#009e73", 0, "o"), ("interval", "#009e73", 0, "^"),
     ("far exact", "#56b4e9", 0, "s"), ("exact offset", "#56b4e9", 0, "s"),
@@ -60,7 +60,7 @@ class Look:
     size: float = 3.2
 
     def of(self, style):
-        """The arguments of a line for a style of Series."""
+        """Returns the arguments that matplotlib needs for a line with this look. style: Series.style."""
         hollow = self.marker.endswith(" ") or self.marker in "+x"
         return {"color": self.colour, "linestyle": "none" if style == "points" else self.dash, "linewidth": self.width,
                 "marker": self.marker.strip() if "points" in style else "", "markersize": self.size,
@@ -72,8 +72,8 @@ def names_of(figure):
 
 
 def looks_of(figure):
-    """A Look for each name. Later names of one method have other dashes and markers. Emphasised lines are thick, and
-    each is thinner than those below it, so that lines with the same values all stay visible."""
+    """Returns a Look for each name. Names of one method differ in dashes and markers. Emphasised lines are thick. An
+    emphasised line is thinner than the lines below it, so that lines with the same values all stay visible."""
     out, times, unknown, thick = {}, {}, 0, 0
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
     for name in names_of(figure):
@@ -113,7 +113,7 @@ def power_label(exponent):
 
 
 def tick_label(value):
-    """12345.678 as 12,346: few digits, no zeros at the end; 10⁵ if it would be long."""
+    """Returns a short text for a number: 12,346 for 12345.678, no zeros at the end, 10⁷ for long numbers."""
     size = abs(value)
     if size != 0 and (size >= 1e7 or size < 1e-4):
         exponent = math.floor(math.log10(size) + 1e-9)
@@ -127,8 +127,8 @@ def finite(values):
 
 
 def log_ticks(values, low, high, most):
-    """At most `most` ticks: at the values if these are powers of two, at powers of ten, at their multiples by 2 and 5,
-    or evenly, whichever first gives two."""
+    """Returns at most `most` ticks. Tries these places in turn, and takes the first that gives two ticks: the values, if they
+    are powers of two; powers of ten; powers of ten times 1, 2 and 5; even distances."""
     distinct = sorted(set(values))
     if 3 <= len(distinct) <= 10 and all(v > 0 and math.frexp(v)[0] == 0.5 for v in distinct):
         return distinct[::-(-len(distinct) // most)]
@@ -142,8 +142,8 @@ def log_ticks(values, low, high, most):
 
 
 def scale_axis(ax, side, spec, values, room):
-    """Scales an axis for the values. A logarithmic one that shows zeros is linear from 0 to 1 (or, if values are below
-    1, to the power of ten below the least) and shaded there. room: its length in points, for the number of ticks."""
+    """Scales an axis for the values. If a logarithmic axis shows zeros, its part from 0 to 1 is linear and shaded; if values
+    are below 1, this part ends at the power of ten below the least value. room: length of the axis in points."""
     values = finite(values)
     axis, line, span = (ax.xaxis, ax.axvline, ax.axvspan) if side == "x" else (ax.yaxis, ax.axhline, ax.axhspan)
     scaled, limits = (ax.set_xscale, ax.set_xlim) if side == "x" else (ax.set_yscale, ax.set_ylim)
@@ -165,7 +165,7 @@ def scale_axis(ax, side, spec, values, room):
     else:
         positive = [v for v in values if v > 0] or [1.0]
         highest = max(spec.high or max(positive), min(positive))
-        least = spec.low or max(min(positive), highest * 1e-200)  # more decades than matplotlib can transform
+        least = spec.low or max(min(positive), highest * 1e-200)  # matplotlib cannot transform more decades
         air = 10 ** min(0.3, 0.03 * max(math.log10(highest) - math.log10(least), 0.08))
         low, high = least / (1 if spec.low else air), highest * (1 if spec.high else air)
         low, high = (low / 2, high * 2) if high < 1.3 * low else (low, high)
@@ -214,7 +214,7 @@ def columns_for(figure):
 
 
 def same_rows(figure):
-    """Whether the strips of all panels have the same rows, whose names are then drawn once."""
+    """Returns true if the strips of all panels have the same rows. The names of the rows are then drawn once."""
     return len({tuple(s.name for s in p.strip) for p in figure.panels}) == 1
 
 
@@ -247,7 +247,7 @@ class Drawer:
         grid = self.canvas.add_gridspec(len(heights), columns, height_ratios=heights)
         for at, panel in enumerate(panels):
             row, column = divmod(at, columns)
-            # A label that the panel below or on the left has as well is drawn only there.
+            # If the panel below or on the left has the same label, only that panel shows the label.
             below, left = (panels[i] if 0 <= i < len(panels) else None for i in (at + columns, at - 1))
             self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strips[row], (
                 below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label),
@@ -263,14 +263,15 @@ class Drawer:
             self.label(ax, panel)
 
     def label(self, ax, panel):
-        """Writes the labels beside their points, the longest first, each where it covers least: no other label, no point,
-        and nothing beyond the axes. One that would cover any of these is left out, but not the first of a series."""
+        """Writes the labels beside their points: the first label of each series, then the rest, the longest first. A label takes
+        the place where it covers least. It may cover nothing and must lie inside the axes; otherwise it is left out. Only the
+        first label of a series is never left out."""
         scale = 72 / self.canvas.dpi
         inside = [at * scale for at in ax.bbox.extents]
         points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
                   for *at, text in zip(s.x, s.y, s.labels or [""] * len(s.x)) if len(finite(at)) == 2]
         taken = [(x - 3, y - 3, x + 3, y + 3) for *_, x, y in points]
-        for s in panel.series:  # and the bars, and the lines, which are cut into squares
+        for s in panel.series:  # bars are taken as well, and lines, cut into squares
             for low, high, y in zip(s.x_low, s.x_high, s.y):
                 (left, at), (right, _) = (ax.transData.transform((x, y)) * scale for x in (low, high))
                 taken.append((left, at - 2, right, at + 2))
@@ -298,7 +299,7 @@ class Drawer:
                             fontsize=8, annotation_clip=False, in_layout=False)
 
     def handles(self):
-        """The lines of the key: of each series, then of each mark."""
+        """Returns the lines of the key: a line for each series, then a line for each mark."""
         styles = {s.name: s.style for panel in self.figure.panels for s in reversed(panel.series)}
         out = [Line2D([], [], label=name, **self.looks[name].of(styles[name])) for name in self.looks if name in styles]
         marks = dict.fromkeys(m.name for panel in self.figure.panels for m in panel.marks if m.name)
@@ -318,7 +319,7 @@ class Drawer:
         for mark in panel.marks:
             if math.isfinite(mark.at) and (mark.at > 0 or not (panel.x if mark.vertical else panel.y).log):
                 (ax.axvline if mark.vertical else ax.axhline)(mark.at, **mark_look(self.figure, mark.name))
-        # Emphasised series first: they are thick, so a series with the same values stays visible above.
+        # Draws the thick, emphasised series first, so that a series with the same values stays visible above them.
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "no valid measurement", transform=ax.transAxes, ha="center", va="center", color="#666666")
@@ -328,8 +329,8 @@ class Drawer:
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
     def names(self, ax, panel):
-        """Writes the name of each point: beside it, or, near 0, on a line of its own below 0, from left to right ever
-        lower, so that no leader crosses a name. The x axis begins where all names have room."""
+        """Writes the name of each point beside the point. The names of points near 0 stand below 0, each lower than the name
+        to its left, so that no leader crosses a name. The x axis begins where all names have room."""
         points = sorted((s.x[0], s.y[0], s.name) for s in panel.series)
         near, last, (low, high) = [p for p in points if p[1] < 10], 0, map(math.log, ax.get_xlim())
         heights = []
@@ -361,7 +362,7 @@ class Drawer:
                         capthick=0.8)
 
     def series(self, ax, panel, s):
-        """Draws a series; False if none of its points has a place."""
+        """Draws a series. Returns False if no point can be drawn."""
         look, clean = self.looks[s.name], lambda values, log: [
             v if v is not None and math.isfinite(v) and (v > 0 or not log) else math.nan for v in values]
         logs = [ax.get_xscale() == "log", ax.get_yscale() == "log"]
@@ -395,7 +396,7 @@ class Drawer:
 
 
 def numbers_of(figure):
-    """The CSV of a figure: the drawn values, as they were measured."""
+    """Returns the CSV of a figure: the drawn values, not rounded."""
     rows = []
     for panel in figure.panels:
         for s in panel.series + panel.strip:
@@ -407,8 +408,8 @@ def numbers_of(figure):
 
 
 def files_of(figure):
-    """The files of a figure by their kinds: svg and csv (texts), pdf (bytes). The SVG carries title and caption for
-    readers who cannot see it."""
+    """Returns the files of a figure by kind: svg and csv (texts), pdf (bytes). The SVG has the title and the caption for
+    readers who cannot see the figure."""
     canvas, svg, pdf = Drawer(figure).canvas, io.StringIO(), io.BytesIO()
     canvas.savefig(pdf, format="pdf", metadata={"CreationDate": None, "Title": figure.title})
     canvas.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
@@ -420,7 +421,7 @@ def files_of(figure):
 
 
 def inline_svg(svg, prefix):
-    """An SVG for a page with others: its ids get a `prefix`."""
+    """Returns an SVG for a page with several SVGs: its ids get a `prefix`."""
     return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, svg[svg.index("<svg"):])
 
 
@@ -431,7 +432,7 @@ SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is l
 
 
 def merge_series(figure):
-    """Merges series that agree in every panel into one, whose name lists all of them."""
+    """Merges series that agree in every panel. The merged series has the names of all of them."""
     def values_of(name):
         return repr([[(s.style, [list(map(float, getattr(s, of))) for of in ("x", "y", *ENDS)]) for s in panel.series
                       if s.name == name] for panel in figure.panels])
@@ -443,7 +444,7 @@ def merge_series(figure):
     for group in groups.values():
         if len(group) == 1:
             continue
-        # The first name gives the colour: the subject of the figure, or ours.
+        # The first name gives the colour. An emphasised series or FAR comes first.
         group.sort(key=lambda n: not (n in emphasised or n.startswith("FAR")))
         name = " = ".join(group)
         if len(name) > LONGEST_NAME:

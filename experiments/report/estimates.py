@@ -22,9 +22,9 @@ class Estimate:
 
 
 def holds_again(n, cut):
-    """The probability that the median of another n runs lies between run cut + 1 and run n - cut of the first n, by
-    time. In the order of all 2 n runs every mixture of the two measurements is equally likely. The other median, its
-    run `middle`, is below run cut + 1 of the first where at most `cut` of the first come before it."""
+    """Returns the probability that the median of n new runs lies between run cut + 1 and run n - cut of n old runs, sorted by
+    time. Every order of old and new runs is equally likely. The new median is new run number `middle`. It is below old run
+    cut + 1 if at most `cut` old runs come before it."""
     middle = -(-n // 2)
     below = sum(math.comb(middle - 1 + i, i) * math.comb(2 * n - middle - i, n - i) for i in range(cut + 1))
     return 1 - 2 * below / math.comb(2 * n, n)
@@ -32,21 +32,21 @@ def holds_again(n, cut):
 
 @functools.lru_cache(maxsize=None)
 def cut_of(n):
-    """How many runs the interval of a median leaves out at each end: as many as can be where the median of another n
-    runs lies in it with at least 95 %; none where even the range of all runs does not reach that."""
+    """Returns how many runs the interval of a median leaves out at each end. It is the largest number for which the median
+    of n new runs lies in the interval with at least 95 % probability; 0 if there is no such number."""
     return max((cut for cut in range(n // 2) if holds_again(n, cut) >= 0.95), default=0)
 
 
 def median_estimate(values, rounds=()):
-    """The median with its interval (cut_of()), widened to hold the median of each round."""
+    """Returns the median with its interval (cut_of()), which is widened to contain the median of each round."""
     ordered, cut = sorted(values), cut_of(len(values))
     ends = [ordered[cut], ordered[-1 - cut]] + [median(of) for of in rounds if of]
     return Estimate(median(values), float(min(ends)), float(max(ends)), len(values))
 
 
 def ratio_estimate(over, under):
-    """The median of the ratios of runs in the same turn of the same round, with its interval; None if there are none.
-    What slows a whole turn is in both runs and so in no ratio."""
+    """Returns the median of the ratios of two runs in the same turn of a round, with its interval; None without ratios. What
+    slows a turn slows both runs, so it hardly changes their ratio."""
     rounds = [tuple(a / b for a, b in zip(*both)) for both in zip(over, under)]
     ratios = [ratio for of in rounds for ratio in of]
     return median_estimate(ratios, rounds) if ratios else None
@@ -57,7 +57,7 @@ def median(values):
 
 
 def beta_share(a, b, x):
-    """The regularized incomplete beta function I_x(a, b), by its continued fraction (Lentz)."""
+    """Returns the regularized incomplete beta function I_x(a, b), by its continued fraction (Lentz)."""
     if x <= 0 or x >= 1:
         return float(x >= 1)
     if x > (a + 1) / (a + b + 2):
@@ -76,7 +76,7 @@ def beta_share(a, b, x):
 
 
 def solved(rising, target, low, high):
-    """The point where a rising function reaches the target, by bisection."""
+    """Returns the point between low and high where a rising function has the value `target`, by bisection."""
     for _ in range(200):
         middle = (low + high) / 2
         low, high = (middle, high) if rising(middle) < target else (low, middle)
@@ -85,7 +85,7 @@ def solved(rising, target, low, high):
 
 @functools.lru_cache(maxsize=None)
 def rate_of(hits, of):
-    """A rate with its 95 % interval by Clopper and Pearson; without a hit, the upper bound at 95 %."""
+    """Returns a rate with its 95 % interval by Clopper and Pearson; without a hit, with the upper bound at 95 %."""
     if hits == 0:
         return Estimate(0, 0, 1 - 0.05 ** (1 / of), of)
     low = solved(lambda p: beta_share(hits, of - hits + 1, p), 0.025, 0, 1)
@@ -111,7 +111,7 @@ class Exponent:
 
 
 def exponent_of(x, y):
-    """The Exponent; None if fewer than three pairs are positive, or all x are equal."""
+    """Returns the Exponent; None if fewer than three pairs (x, y) are positive, or if all x are equal."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     good = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
     x, u, v = x[good], np.log(x[good]), np.log(y[good])
@@ -126,14 +126,14 @@ def exponent_of(x, y):
 
 
 def exponent_text(e):
-    """`0.77 (0.58 to 0.96)`, or `0.77 (no interval of 4 points)`."""
+    """Returns a text such as `0.77 (0.58 to 0.96)` or `0.77 (no interval of 4 points)`."""
     if e.points < FEWEST_FOR_INTERVAL:
         return f"{e.value:.2f} (no interval of {e.points} points)"
     return f"{e.value:.2f} ({e.low:.2f} to {e.high:.2f})"
 
 
 def rounded(value, digits=3):
-    """Three significant digits, whole numbers in full, thousands grouped: 0.0123, 1.50, 12,346."""
+    """Returns a text with `digits` significant digits; whole numbers in full: 0.0123, 1.50, 12,346."""
     if value is None or not math.isfinite(value):
         return "-"
     size, sign = abs(value), "-" if value < 0 else ""
@@ -147,39 +147,39 @@ def rounded(value, digits=3):
 
 
 def grouped(n):
-    """1234567 as 1,234,567."""
+    """Returns 1,234,567 for 1234567."""
     return f"{int(n):,}"
 
 
 def counted(n, one, many):
-    """`1 pair`, `1,234 pairs`."""
+    """Returns a text such as `1 pair` or `1,234 pairs`."""
     return f"{grouped(n)} {one if n == 1 else many}"
 
 
 def listed(words):
-    """`a, b and c`."""
+    """Returns a text such as `a, b and c`."""
     words = list(words)
     return " and ".join([", ".join(words[:-1])] * (len(words) > 1) + words[-1:])
 
 
 def sentence(text):
-    """The text, with a full stop unless it ends a sentence already."""
+    """Returns the text, with a full stop unless the text ends a sentence already."""
     return text if not text or text[-1] in ".?!" else text + "."
 
 
 def of_all(part, whole):
-    """`4 of 3,857`."""
+    """Returns a text such as `4 of 3,857`."""
     return f"{grouped(part)} of {grouped(whole)}"
 
 
 def share(part, whole):
-    """Per cent; NONE if `whole` is 0."""
+    """Returns part / whole in per cent; NONE if `whole` is 0."""
     return 100 * part / whole if whole else NONE
 
 
 def rate_text(hits, of):
-    """`0 of 114,014 (95 % bound: at most 2.6e-5)`, or with the share and its interval. Only for cases that were drawn
-    independently, such as random placements: pairs, objects, frames and resolutions of a scene are not."""
+    """Returns a text such as `0 of 114,014 (95 % bound: at most 2.6e-5)`; with hits, the share and its interval follow. Only
+    for cases that were drawn independently, such as random placements, not for pairs, objects or frames of a scene."""
     if of == 0:
         return of_all(hits, of)
     rate = rate_of(int(hits), int(of))
@@ -190,14 +190,14 @@ def rate_text(hits, of):
 
 
 def spread(values, unit=""):
-    """`2 (1 to 3)`: the median with the least and the largest; the value if it is the only one; `-` for none."""
+    """Returns a text such as `2 (1 to 3)`: the median, the least and the largest value. One value: the value; none: `-`."""
     if len(values) < 2:
         return "".join(rounded(value) + unit for value in values) or "-"
     return f"{rounded(median(values))}{unit} ({rounded(min(values))} to {rounded(max(values))})"
 
 
 def estimate_text(e, digits=3):
-    """`3.88 (3.70 to 4.10)`; for one run only its value; `-` for none."""
+    """Returns a text such as `3.88 (3.70 to 4.10)`; for one run only its value; for none `-`."""
     if e is None or e.n == 0:
         return "-"
     if e.n == 1:

@@ -4,7 +4,7 @@ How to write a chapter. The file chapters/NAME.py (dashes become underscores) is
 function `fill(chapter, study)`, which returns nothing. The fill() of this file calls it:
 
 - `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)` and
-  `chapter.find_broken(text)` (a broken promise; these come first afterwards), and Figure, Table, Picture and files to their
+  `chapter.find_broken(text)` (broken promises, which the report puts first), and Figure, Table, Picture and files to their
   lists. In text, put `backticks` around commands.
 - `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid. `study.all_rows` also has the rows that
   say in `left_out` why nothing was measured; `study.points` is the whole grid. The columns are
@@ -42,22 +42,22 @@ from estimates import (FEWEST_FOR_INTERVAL, NONE, Estimate, counted, estimate_te
 
 
 class Damaged(ValueError):
-    """A chapter cannot read a text of a row."""
+    """Raised if a chapter cannot read a text of a row."""
 
 
 @dataclass
 class Series:
-    """Points of one line or cloud. x and y have the same length. NaN: a gap."""
+    """Points of one line or cloud. x and y have the same length. NaN makes a gap."""
     name: str
     x: list = field(default_factory=list)
     y: list = field(default_factory=list)
     style: str = "lines_points"  # or "lines", "points"
-    emphasis: bool = False       # drawn thick: ours, or the subject of the figure
-    x_low: list = field(default_factory=list)  # ends of intervals: as many as x, or none
+    emphasis: bool = False       # drawn thick: a method of farcull, or the subject of the figure
+    x_low: list = field(default_factory=list)  # lower ends of intervals along x: as many as x, or none
     x_high: list = field(default_factory=list)
     y_low: list = field(default_factory=list)
     y_high: list = field(default_factory=list)
-    labels: list = field(default_factory=list)  # texts beside the points, in place of a key; as many as x, or none
+    labels: list = field(default_factory=list)  # texts beside the points, used instead of a key; as many as x, or none
 
 
 @dataclass
@@ -70,14 +70,14 @@ class Mark:
 
 @dataclass
 class Axis:
-    """A logarithmic axis that shows zeros is linear from 0 to 1 (or, if values are below 1, to a
-    power of ten below them all), and logarithmic beyond; the linear part is shaded."""
-    label: str = ""  # with the unit in brackets, "time (ms)"
+    """A logarithmic axis that shows zeros has a linear, shaded part from 0 to 1. If values are below 1, this part ends at a
+    power of ten below all values."""
+    label: str = ""  # such as "time (ms)": with the unit
     log: bool = False
     zero: bool = False
-    low: float = None  # fixed ends
+    low: float = None  # fixed lower end; None: from the values
     high: float = None
-    even: bool = False  # only the values of the series, in their order, at even distances
+    even: bool = False  # shows only the values of the series, in their order, at even distances
 
 
 def log(label, zero=False, low=None, high=None):
@@ -91,17 +91,17 @@ class Panel:
     y: Axis = field(default_factory=Axis)
     series: list = field(default_factory=list)
     marks: list = field(default_factory=list)
-    strip: list = field(default_factory=list)  # Series without y, a row each below the panel
+    strip: list = field(default_factory=list)  # Series without y; each is a row below the panel
 
 
 @dataclass
 class Figure:
-    name: str  # of its files; [a-z0-9-]
+    name: str  # the name of its files; [a-z0-9-]
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
-    columns: int = 0      # of panels, up to 4; 0: draw.py chooses
-    narrow: bool = False  # one column of two wide (draw.py)
+    columns: int = 0      # columns of panels, up to 4; 0: draw.py chooses
+    narrow: bool = False  # as wide as one of two columns of a journal
     named: bool = False   # each series is one point with its name beside it; no key
 
 
@@ -111,7 +111,7 @@ class Table:
     name: str
     caption: str
     columns: list
-    rows: list = field(default_factory=list)  # lists of texts as shown
+    rows: list = field(default_factory=list)  # each row is a list of the texts to show
 
 
 @dataclass
@@ -128,13 +128,13 @@ class Chapter:
     study: str
     title: str
     question: str
-    command: str  # measures the study again
-    findings: list = field(default_factory=list)  # pairs: broken, text
+    command: str  # the command that measures the study again
+    findings: list = field(default_factory=list)  # pairs: whether a promise is broken, and a sentence
     limits: list = field(default_factory=list)    # what was not measured
     figures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     pictures: list = field(default_factory=list)
-    files: dict = field(default_factory=dict)     # more files of the report: name, text
+    files: dict = field(default_factory=dict)     # more files of the report: the text by the name
 
     def find(self, text):
         self.findings.append((False, text))
@@ -145,14 +145,14 @@ class Chapter:
 
 @dataclass
 class Study:
-    """The rows of one study, as the module docstring says."""
+    """The rows of one study. The beginning of this file describes them."""
     name: str
     quick: bool
     seed: int
     points: pd.DataFrame
     all_rows: pd.DataFrame
     constants: dict = field(default_factory=dict)  # numbers of the program, by name
-    folder: str = ""  # of the store
+    folder: str = ""  # the folder of the store
 
     @property
     def rows(self):
@@ -171,7 +171,7 @@ BOTH_DIRECTIONS = "x,-x,y,-y,z,-z"
 
 
 def method_label(point):
-    """The name of a method with its form: `FAR (OBB)`, `CULLIDE, one round, all views`."""
+    """Returns the name of a method with its form, such as `FAR (OBB)` or `CULLIDE, one round, all views`."""
     method, _, form = point.method.partition(" ")
     out = METHODS.get(method, method)
     if method == "far":
@@ -191,7 +191,7 @@ def method_label(point):
 
 
 def contestant(point):
-    """method_label(), with a radius other than the budget, and with views in both directions."""
+    """Returns method_label(). Adds the radius if it is not the budget, and says if views have both directions."""
     out = method_label(point)
     if point.radius not in ("", "budget"):
         published = point.radius == "published"
@@ -200,7 +200,7 @@ def contestant(point):
 
 
 def describe(point):
-    """A point in words: `two-bunnies, cullide, 512 px`."""
+    """Returns a point in words, such as `two-bunnies, cullide, 512 px`."""
     cells = "cells" if point.method.startswith("voronoi") else "px"
     return ", ".join(word for word in (point.scene, point.method, point.offset, "radius " + point.radius if point.radius
                                        not in ("", "budget") else "", "24-bit depth" if point.depth_format == "fixed24"
@@ -211,7 +211,7 @@ def describe(point):
 
 
 def scene_base(scene):
-    """The name without the seed that it was drawn with: `field` of `field@seed101`."""
+    """Returns the name of a scene without its seed: `field` for `field@seed101`."""
     return scene.split("@seed")[0]
 
 
@@ -220,76 +220,77 @@ NOT_SNAPPED = ("the native canvas, which drew this, does not snap corners of tri
 
 
 def not_snapped(rows):
-    """A sentence for what the published radius missed, if the native canvas drew all rows; else ""."""
+    """Returns NOT_SNAPPED in brackets if the native canvas drew all rows; otherwise ""."""
     return f" ({NOT_SNAPPED})" if len(rows) and "device" in rows and (rows.device == "native").all() else ""
 
 
 # ---- values of rows
 
 def value(row, name):
-    """A number of a row; NaN where the row has none."""
+    """Returns a number of a row; NaN if the row has no such number."""
     out = getattr(row, name, NONE)
     number = isinstance(out, (int, float)) or hasattr(out, "dtype")
     return out if number and not isinstance(out, bool) else NONE
 
 
 def flag(row, name):
-    """Whether the row has a count of that name that is true."""
+    """Returns true if the row has a count of this name and the count is true."""
     return getattr(row, name, False) is True
 
 
 def text(row, name):
-    """A count that is a text; "" where the row has none."""
+    """Returns a count that is a text; "" if the row has no such text."""
     out = getattr(row, name, "")
     return out if isinstance(out, str) else ""
 
 
 def number(row, name):
-    """A count as an integer; 0 where the row has none."""
+    """Returns a count as an integer; 0 if the row has no such count."""
     out = value(row, name)
     return 0 if out != out else int(out)
 
 
 def column(rows, name):
-    """A column of numbers; NaN where rows have none."""
+    """Returns a column of numbers; NaN for rows without such a number."""
     if name not in rows:
         return pd.Series(NONE, rows.index, float)
     return pd.to_numeric(rows[name], errors="coerce")
 
 
 def total(rows, name):
-    """The sum of a count over rows, an integer; rows without it count 0."""
+    """Returns the sum of a count over rows, an integer. Rows without the count add 0."""
     return sum(int(x) for x in column(rows, name).dropna())
 
 
 def where_true(rows, name):
-    """The rows with a count of that name that is true."""
+    """Returns the rows where the count of this name is true."""
     return rows[rows[name].map(lambda x: x is True)] if name in rows else rows.iloc[:0]
 
 
 def promising(rows):
-    """The rows of methods that promise to miss nothing."""
+    """Returns the rows of methods that promise to miss nothing."""
     return where_true(rows, "promises")
 
 
 def by(rows, name, sort=False):
-    """Pairs of a value of the column and its rows, in the order of first occurrence. name: a column or several."""
+    """Returns pairs: a value of the column and the rows with this value, in the order of first occurrence. name: a column, or
+    a list of columns."""
     return list(rows.groupby(name, sort=sort)) if len(rows) else []
 
 
 def groups(rows, name):
-    """by(), in the order of the values."""
+    """Returns by(), but in the order of the values."""
     return by(rows, name, True)
 
 
 def resolutions(rows):
-    """All resolutions above 0 (those declared in pixels), ascending."""
+    """Returns all resolutions above 0, ascending."""
     return sorted(int(r) for r in set(rows.resolution) if r > 0)
 
 
 def estimate(row):
-    """The median time of the row's runs in ms with its interval; without interval for one run; None
-    if the row has no time."""
+    """Returns the median time of the row's runs, in ms, with its interval. One run has no interval. None if the row has no
+    time."""
     if row.runs:
         return median_estimate(row.runs, row.rounds)
     one = value(row, "total_ms")
@@ -297,7 +298,7 @@ def estimate(row):
 
 
 def false_positives(row):
-    """Candidates that do not collide over pairs that do; NaN if none does."""
+    """Returns candidates that do not collide / colliding pairs; NaN if no pair collides."""
     colliding = value(row, "colliding")
     if not colliding > 0:
         return NONE
@@ -305,13 +306,13 @@ def false_positives(row):
 
 
 def of_rows(rows, part, whole):
-    """The sums of two counts: `4 of 3,857`."""
+    """Returns the sums of two counts over the rows as a text such as `4 of 3,857`."""
     return of_all(total(rows, part), total(rows, whole))
 
 
 def missed_of(rows):
-    """`4 of 3,857 (0.10 %, on 2 of 9 scenes)`. Pairs of a scene are not independent, and the scenes
-    were chosen by hand, so that there is no interval."""
+    """Returns a text such as `4 of 3,857 (0.10 %, on 2 of 9 scenes)`. It has no interval, since the pairs of a scene are not
+    independent, and the scenes were chosen by hand."""
     missed, colliding = total(rows, "missed"), total(rows, "colliding")
     scenes = rows.scene.map(scene_base)
     hit = scenes[column(rows, "missed") > 0].nunique()
@@ -320,7 +321,7 @@ def missed_of(rows):
 
 
 def sample_text(rows):
-    """The size of the sample: `n = 24 points, each the median of 9 runs in 3 rounds`."""
+    """Returns the size of the sample, such as `n = 24 points, each the median of 9 runs in 3 rounds`."""
     runs = sorted({max(len(r), 1) for r in rows.runs}) if len(rows) else []
     out = "n = " + counted(len(rows), "point", "points")
     if not runs:
@@ -335,7 +336,7 @@ def sample_text(rows):
 # ---- series and tables of rows
 
 def series_of(name, rows, x, y, **look):
-    """The points x(row), y(row). x and y: functions of a row, or names of columns."""
+    """Returns a Series with a point for each row. x and y: functions of a row, or names of columns."""
     along = [(lambda row, n=f: value(row, n)) if isinstance(f, str) else f for f in (x, y)]
     out = Series(name, **look)
     for row in rows.itertuples():
@@ -345,7 +346,7 @@ def series_of(name, rows, x, y, **look):
 
 
 def times_of(name, rows, x, **look):
-    """series_of() over the time from triangles to pairs, in ms, with the intervals of the time."""
+    """Returns series_of() whose y is the time from triangles to pairs, in ms, with the interval of each time."""
     none = Estimate(NONE, NONE, NONE, 0)
     out = series_of(name, rows, x, lambda row: (estimate(row) or none).value, **look)
     for row in rows.itertuples():
@@ -356,7 +357,7 @@ def times_of(name, rows, x, **look):
 
 
 def columns(texts, numbers, more_texts=(), more_numbers=()):
-    """Columns of text, of numbers, of text again and of numbers again."""
+    """Returns columns for a Table, in this order: texts, numbers, more_texts, more_numbers."""
     out = []
     for names, side in ((texts, "l"), (numbers, "r"), (more_texts, "l"), (more_numbers, "r")):
         out += [(name, side) for name in names]
@@ -364,14 +365,14 @@ def columns(texts, numbers, more_texts=(), more_numbers=()):
 
 
 def count_cell(row, name):
-    """A count for people, `-` where the row has none."""
+    """Returns a count as a text; `-` if the row has no such count."""
     out = value(row, name)
     return "-" if out != out else grouped(out)
 
 
 def table_of_rows(name, caption, rows, cells):
-    """A table with a line for each row. cells: the value of each column by its name: a function of the row, or the
-    name of a count (its digits are grouped), `~NAME` (rounded) or `=NAME` (a text)."""
+    """Returns a table with a line for each row. cells: for each column, a function of the row; or `NAME` of a count, to group
+    its digits; or `~NAME`, to round it; or `=NAME` for a text."""
     def filled(row, cell):
         if callable(cell):
             return cell(row)
@@ -385,7 +386,7 @@ def table_of_rows(name, caption, rows, cells):
 
 
 def estimate_cell(row):
-    """A cell of table_of_rows(): the time with its interval."""
+    """Returns the time of a row with its interval, as a cell for table_of_rows()."""
     return estimate_text(estimate(row))
 
 
@@ -397,8 +398,8 @@ def exponents_table(name, x):
 
 
 def times_panel(title, axis, x, methods, exponents, plot):
-    """A panel of times over the column x. methods: for each name, whether it is emphasised, and its rows. Adds the
-    exponents to the table."""
+    """Returns a panel of times over the column x. methods: for each name, whether it is emphasised, and its rows. Adds a row
+    for each method to the table `exponents`."""
     out = Panel(title, log(axis, zero=True), log("time (ms)"))
     for name, (emphasis, rows) in methods.items():
         out.series.append(times_of(name, rows, x, emphasis=emphasis))
@@ -410,22 +411,22 @@ def times_panel(title, axis, x, methods, exponents, plot):
 # ---- findings that every chapter has
 
 def is_lemma(row):
-    """Whether the row's promise is about violated points, not about missed pairs."""
+    """Returns true if the row's promise is about violated points; false if it is about missed pairs."""
     return row.method.startswith("lemma")
 
 
 def failures(row):
-    """The count that the promise of the row is about; NaN where it has none."""
+    """Returns the count that the promise of the row is about; NaN if the row has no such count."""
     return value(row, "violations" if is_lemma(row) else "missed")
 
 
 def breaks(row):
-    """Whether the row promises and did not keep it."""
+    """Returns true if the row broke a promise."""
     return row.left_out == "" and flag(row, "promises") and failures(row) > 0
 
 
 def add_broken(chapter, rows):
-    """Adds a broken promise for each of these rows, which promise, that failed."""
+    """Adds a finding for each row that broke a promise."""
     for row in rows.itertuples():
         if breaks(row):
             part = of_all(failures(row), number(row, "points" if is_lemma(row) else "colliding"))
@@ -435,8 +436,8 @@ def add_broken(chapter, rows):
 
 
 def add_promises(chapter, study):
-    """Adds a broken promise for each row that promises and failed; if there is none, how many pairs
-    and points could have been missed. Reports rows that promise and lack the count separately."""
+    """Adds a finding for each row that broke a promise. If no row did, adds how many pairs and points could have been missed.
+    Reports rows that promise but lack the count separately."""
     rows = promising(study.rows)
     lost = pd.Series([failures(row) for row in rows.itertuples()], rows.index, float)
     silent, known = int(lost.isna().sum()), rows[lost.notna()]
@@ -460,15 +461,15 @@ def add_promises(chapter, study):
 # ---- what answered, and which pairs could have been missed
 
 def same_pixels(rows, row):
-    """The rows of the same scene and frame, in as many pixels along the same views."""
+    """Returns the rows with the same scene, frame, resolution and views as `row`."""
     views = ("", "x,y,z") if row.views in ("", "x,y,z") else (row.views,)
     return rows[(rows.scene == row.scene) & (rows.frame == row.frame) & (rows.resolution == row.resolution) &
                 rows.views.isin(views)]
 
 
 def at_risk(rows, row):
-    """How many pairs of the row are lost with 0.9 of the radius, and without a ball, in the same scene, views and
-    pixels; NaN where that is not known. Without a ball: as CULLIDE draws, if FAR was not run so."""
+    """Returns how many pairs are lost with 0.9 of the radius, and how many without a ball, in the same scene, views and
+    pixels; NaN: not known. If FAR was not run without a ball, the count of CULLIDE is taken."""
     if row.method != "far":
         return NONE, NONE
     here = same_pixels(rows, row)
@@ -482,7 +483,7 @@ def at_risk(rows, row):
 
 
 def risk_text(rows, pairs):
-    """`at risk there: 9 pairs with 0.9 of the radius and 12 without a ball`."""
+    """Returns a text such as `at risk there: 9 pairs with 0.9 of the radius and 12 without a ball`."""
     if not len(pairs):
         return ""
     words = []
@@ -502,21 +503,21 @@ def risk_text(rows, pairs):
 
 
 def culled_shares(rows):
-    """Of all triangles of the rows, the per cent that boxes took away, and that views did. Inside an object FAR also
-    keeps triangles that boxes leave to no view, for pairs in one patch."""
+    """Returns how many per cent of all triangles boxes took away, and how many per cent views took away. If an object is
+    tested against itself, FAR keeps some triangles that boxes leave to no view, for pairs in one patch."""
     triangles, kept = total(rows, "triangles"), total(rows, "kept_triangles")
     left = int(np.fmax(column(rows, "left_by_boxes"), column(rows, "kept_triangles")).sum())
     return share(triangles - left, triangles), share(left - kept, triangles)
 
 
 def without_size(row):
-    """The contestant without the size of triangles: at a resolution chosen by it the method is the same."""
+    """Returns the contestant without the size of triangles, by which only its resolution was chosen."""
     return contestant(row._replace(method=row.method.split(" @")[0]))
 
 
 def add_kept(chapter, rows, pairs):
-    """Adds that the rows missed nothing, by what decided: views, whose pixels and radius could have lost the pairs at
-    risk, or boxes alone, which could have lost none."""
+    """Adds that the rows missed nothing. Rows in which views decided could have lost the pairs at risk. Rows in which boxes
+    alone decided could not have lost a pair, and are reported separately."""
     used = column(pairs, "views_used")
     for runs, words in ((pairs[used > 0], " in which views decided"), (pairs[used == 0], " in which boxes alone decided"),
                         (pairs[used.isna()], "")):
@@ -532,7 +533,7 @@ def add_kept(chapter, rows, pairs):
 
 
 def fill(chapter, study):
-    """Fills the chapter by its file. Leaves out figures without panels and tables without rows."""
+    """Fills the chapter with the fill() of the chapter's file. Leaves out figures without panels and tables without rows."""
     importlib.import_module("chapters." + study.name.replace("-", "_")).fill(chapter, study)
     chapter.figures = [figure for figure in chapter.figures if figure.panels]
     chapter.tables = [table for table in chapter.tables if table.rows]
@@ -558,7 +559,7 @@ def add_gaps(chapter, study):
 
 
 def command_of(study, runs):
-    """`farcull experiment NAME` with the options of the last run of its rows."""
+    """Returns the command `farcull experiment NAME` with the options of the last run that measured the rows."""
     words = ["farcull", "experiment", study.name] + ["--quick"] * study.quick
     words += ["--seed", str(study.seed)] if study.seed != 1 else []
     last = study.all_rows.run.max() if len(study.all_rows) else 0

@@ -1,5 +1,5 @@
-"""The report as files: results.md, broken promises first, then a section for each chapter; the same as one self-contained
-page of HTML; tables as CSV for programs and as LaTeX (booktabs) for papers."""
+"""Makes the files of the report: results.md, which has broken promises first and then a section for each chapter; a page of
+HTML with the same contents, in one file; tables as CSV for programs and as LaTeX (booktabs) for papers."""
 import base64
 import collections
 import csv
@@ -14,7 +14,7 @@ from estimates import grouped, of_all, sentence
 from frame import Table, columns
 
 FRONT = "headline"  # the study of the first page
-MOST_ROWS = 16  # of a table on the page; longer ones are files alone
+MOST_ROWS = 16  # a longer table is not on the page; it has a file
 MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
 
 
@@ -31,7 +31,7 @@ class DrawnPicture:
 
 @dataclass
 class Drawn:
-    """A chapter with everything that was made for it."""
+    """A chapter with the files that were made for it."""
     chapter: object
     study: object
     svgs: list = field(default_factory=list)
@@ -68,7 +68,7 @@ def runs_table(page):
 # ---- Markdown
 
 def markdown_prose(text):
-    """Escapes signs of Markdown, except in code; a bar is escaped in code too, where it also ends a cell."""
+    """Escapes signs of Markdown outside code. Escapes bars everywhere, since a bar in code ends a cell of a table."""
     parts = re.split("(`[^`]*`)", re.sub(r"[\n\r]", " ", text))
     return "".join(part.replace("|", "\\|") if part[:1] == "`" and len(part) > 1
                    else re.sub(r"([\\*_<>|\[\]#`])", r"\\\1", part) for part in parts)
@@ -88,7 +88,7 @@ def markdown_table(table):
 
 
 def section(number, drawn, count):
-    """A chapter. count: how many figures and tables the page has so far."""
+    """Returns a chapter as Markdown. count: how many figures and tables the page has so far."""
     def label(kind, title=""):
         count[kind] += 1
         return f"**{markdown_prose(f'{kind} {count[kind]}.{title and chr(32) + sentence(title)}')}**"
@@ -120,7 +120,7 @@ def section(number, drawn, count):
 
 
 def front_markdown(page):
-    """The beginning of the page: broken promises, then the study "headline" as a figure, a table and its sentences."""
+    """Returns the beginning of the page: broken promises; then figure, table and sentences of the study "headline"."""
     out = "# Results\n\n"
     if broken(page):
         out += ("**Broken.** What must never happen has happened:\n\n" +
@@ -133,7 +133,7 @@ def front_markdown(page):
 
 
 def rest_markdown(page):
-    """All other studies, each a chapter, and where they were measured."""
+    """Returns the rest of the page: a chapter for each other study, and where the studies were measured."""
     count = collections.Counter()
     out = (f"All of this page is made from the store of results by `farcull report {shlex.quote(page.folder)}`: no number "
            "was typed. Counts are the same, bit for bit, on the same device and CPU features; times are of the machine "
@@ -173,7 +173,7 @@ def html_text(text):
 
 
 def html_prose(text):
-    """A line of Markdown, of the signs that this file writes."""
+    """Converts a line of Markdown to HTML. Knows only the signs that this file writes."""
     def of(match):
         escaped, code, strong, words, to, plain = match.groups()
         return (f"<code>{html_text(code.replace(chr(92) + '|', '|'))}</code>" if code else
@@ -183,7 +183,7 @@ def html_prose(text):
 
 
 def block_html(block, images):
-    """A block of Markdown. images: HTML for the path of each image."""
+    """Converts a block of Markdown to HTML. images: the HTML for the path of each image."""
     lines = block.split("\n")
     if heading := re.match("(#+) (.*)", block):
         name = re.sub("[^a-z0-9]+", "-", re.sub(r"^\d+\. ", "", heading[2]).lower()).strip("-")
@@ -234,7 +234,7 @@ LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "�
          **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
          "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
          "|": "$|$", "`": ""}
-ROWS_OF_FLOAT = 40  # a float is at most one page
+ROWS_OF_FLOAT = 40  # rows in one float, which fits on a page
 
 
 def latex_text(text):
@@ -248,7 +248,7 @@ def table_csv(table):
 
 
 def table_latex(table):
-    """Floats with caption, label tab:NAME and the rules of booktabs, scaled if they are wider than the text."""
+    """Returns LaTeX: floats with caption, label tab:NAME and the rules of booktabs. Wide tables are scaled to the text."""
     def line(cells):
         return "    " + " & ".join(latex_text(cell) for cell in cells) + " \\\\\n"
 
@@ -267,7 +267,7 @@ def table_latex(table):
 
 
 def rows_csv(study):
-    """Everything that the store holds of the study, and the method as figures name it."""
+    """Returns a CSV of all rows of the study in the store, with the method as figures name it."""
     rows = study.all_rows.drop(columns=["counts", "times"])
     rows = rows.assign(runs=[" ".join(map(repr, runs)) for runs in rows.runs],
                        **{name: rows[name].astype(object).replace(none, "") for name, none in (

@@ -18,13 +18,13 @@ matplotlib.use("Agg")
 import draw as look  # noqa: E402, F401: importing it sets the look of figures
 from matplotlib import pyplot  # noqa: E402
 
-ROUNDS, SIDE = 5, 256  # runs of each form, pixels of a view
+ROUNDS, SIDE = 5, 256  # runs of each form; side of a view in px
 SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres "
           "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers stack "
           "mannequin-devil+self cad-cut").split()
 DEFAULT = "boxes"
 FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then methods
-# Scenes of the list whose exact tests take longer than their views, and in which views are tried.
+# Scenes whose exact tests take longer than drawing. Other directions of views are tried on these scenes.
 LOOKED_AT = "needles-crossed needles-layers cad-cut mannequin-devil+self".split()
 DIRECTIONS, SIDES = 20, (64, 1024)
 # One of these is the fastest on every scene of docs/results/bench.md.
@@ -33,7 +33,7 @@ PARTS = {"boxes": "#e69f00", "views": "#0072b2", "pairs": "#56b4e9", "exact test
 
 
 def part_of(stage):
-    """Which part a stage belongs to: "views" are fattening, drawing and what opens the canvas."""
+    """Returns the part that a stage belongs to. The part "views" is fattening, drawing and opening the canvas."""
     name = stage["name"].split()[0]
     if name in ("boxes", "blocks", "patches"):
         return "boxes"
@@ -41,7 +41,7 @@ def part_of(stage):
 
 
 def record_of(program, command, scene, *words):
-    """What a command of the program says about a scene, as JSON."""
+    """Runs a command of the program on a scene. Returns what the command writes as JSON."""
     name, *flags = scene.split("+")
     out = subprocess.run([program, command, name, *words, *(f"--{flag}" for flag in flags), "--json", "-"],
                          capture_output=True, text=True)
@@ -55,7 +55,7 @@ def drawn(form, side, *words):
 
 
 def run(program, scene, form):
-    """Milliseconds of each part, the triangles that boxes and each view of round 1 left, pairs tested, pairs found."""
+    """Returns ms of each part, triangles that boxes and each view of round 1 left, pairs tested, and pairs found."""
     words = ("--method", form, "--no-verify") if form in (DEFAULT, "exact") else drawn(form, SIDE)
     record = record_of(program, "run", scene, *words)
     ms, left = dict.fromkeys(PARTS, 0.0), {}
@@ -131,7 +131,7 @@ def table(results):
 
 
 def slower(results):
-    """Paragraph: on how many scenes boxes are faster than FAR, and FAR slower than the method exact."""
+    """Returns a paragraph: on how many scenes boxes are faster than FAR, and on how many FAR is slower than exact."""
     totals = [{form: statistics.median(one["total"]) for form, one in forms.items()} for forms in results.values()]
     fastest = sum(of[DEFAULT] <= min(of["objects"], of["triangles"]) for of in totals)
     published, with_boxes = (sum(of[form] > 1 for of in totals) for form in ("objects", "triangles"))
@@ -142,7 +142,7 @@ def slower(results):
 
 
 def looked_along(program, scene):
-    """A row: what one view of `--broad-phase triangles` leaves at best, in the axes and random directions."""
+    """Returns a row: what one view of `--broad-phase triangles` leaves at best, among the axes and random directions."""
     numbers = random.Random(1)
     directions = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
     while len(directions) < DIRECTIONS:
@@ -162,7 +162,7 @@ def looked_along(program, scene):
 
 
 def beside_peers(program, scene):
-    """A row: FAR beside the fastest of all libraries that `bench` asks."""
+    """Returns a row: the time of FAR / the time of the fastest library that `bench` measures."""
     record = record_of(program, "bench", scene, "--methods", "far", "--peers", PEERS, "--device", "cpu", "--repeat", "9",
                        "--limit", "5")
     (far,) = (row for row in record["rows"] if row["name"] == "far")

@@ -1,6 +1,6 @@
 """Reads a store of results (experiments/studies/store.h) into data frames.
 
-The command has opened the store before, and refuses one that is damaged or of another version.
+`farcull report` has opened the store before. It refuses a store that is damaged or of another version.
 """
 import json
 import pathlib
@@ -11,7 +11,7 @@ import pandas as pd
 
 from frame import Study, contestant
 
-ROUNDS = 3  # of a timed point: kRounds of experiments/studies/point.h
+ROUNDS = 3  # rounds of a timed point: kRounds of experiments/studies/point.h
 AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views", "frame", "seed"]
 
 
@@ -44,7 +44,7 @@ class Store:
         counts = [json.loads(text) for text in rows.counts]
         times = [json.loads(text) for text in rows.times]
         rows["counts"], rows["times"] = counts, times
-        # A round that is void keeps its place, so that rounds of two rows are the same turns.
+        # A void round (other programs took the processors) becomes an empty tuple, so that later rounds keep their places.
         rounds = [t.get("rounds", []) for t in times]
         rows["rounds"] = [tuple(() if r["void"] else tuple(r["ms"]) for r in of) for of in rounds]
         rows["runs"] = [sum(of, ()) for of in rows.rounds]
@@ -60,7 +60,7 @@ class Store:
 
 
 def other_devices(folder, first):
-    """The stores of further devices in the folder, by name, and notes of those left out because
+    """Returns the stores of further devices in the folder, sorted by name, and notes about stores that were left out, since
     they are of another commit."""
     stores, notes = [], []
     for path in sorted(pathlib.Path(folder).glob("on-*/results.sqlite")):

@@ -17,33 +17,31 @@ struct FrameRange {
   long last = 0;
   long count() const { return last - first + 1; }
 };
-/// "N" for frames 0 to N - 1, or "A:B"; at most a million frames, numbers up to 1e9. Throws Error
-/// naming --frames.
+/// Reads "N", for frames 0 to N - 1, or "A:B". Throws Error naming --frames for other texts, for
+/// more than a million frames, and for numbers above 1e9.
 FrameRange parse_frames(const std::string& text);
 
 /// A scene that depends on the number of a frame.
 class FrameSource {
  public:
-  /// arguments: as of load_scene(); a built-in scene that moves, or meshes of which some have %d or
-  /// %04d, the frame, in their names. self: every object is tested against itself. Throws Error if
-  /// nothing moves, or as load_scene() does for the first frame.
+  /// arguments: as for load_scene(): a built-in scene that moves, or meshes. Some names of meshes
+  /// have %d or %04d, the number of the frame. self: every object is tested against itself. Throws
+  /// Error if nothing moves, or as load_scene() does for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
-  /// For a moving scene that the caller has made.
   explicit FrameSource(MovingScene moving);
 
-  /// The scene at a frame of the range. Returns the same Scene object each time. Its triangles stay
-  /// in the same memory if the topology did not change since the previous call. Throws Error naming
-  /// the file if a mesh cannot be read, or as MovingScene does.
+  /// Returns the scene at a frame of the range, each time the same Scene object. The triangles stay
+  /// in the same memory if topology_changed() is false. Throws Error naming the file if a mesh
+  /// cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
   /// The Error that at() would throw for the first frame of the range that lacks a file. Empty if
   /// no file is missing.
   std::optional<Error> missing() const;
 
-  /// Whether the last call of at() changed the triangles (by their indices), the number of vertices
-  /// or the objects. False after the first call.
+  /// True if the last call of at() changed the indices of triangles, the number of vertices or the
+  /// objects. False after the first call.
   bool topology_changed() const { return changed_; }
-  /// The notes of a built-in motion on the current frame.
   FrameNotes notes() const;
 
  private:
@@ -53,7 +51,6 @@ class FrameSource {
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
   Scene scene_;  // the current frame; empty for a built-in motion without ignored objects
-  // The topology in the previous call.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Object> objects_;

@@ -20,15 +20,15 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// True if text[at] is a backslash that makes the next character, a comma, colon or *, a part of a
-/// name.
+/// True if text[at] is a backslash before a comma, a colon or a *. The backslash makes this
+/// character a part of a name.
 bool escapes(std::string_view text, std::size_t at) {
   return text[at] == '\\' && at + 1 < text.size() &&
          std::string_view(",:*").find(text[at + 1]) != std::string_view::npos;
 }
 
-/// The position of the first `character` at or after `from` that is not escaped; npos if there is
-/// none.
+/// Returns the position of the first `character` at or after `from` that is not escaped; npos if
+/// there is no such character.
 std::size_t find_plain(std::string_view text, char character, std::size_t from = 0) {
   for (std::size_t k = from; k < text.size(); ++k) {
     if (escapes(text, k))
@@ -39,8 +39,8 @@ std::size_t find_plain(std::string_view text, char character, std::size_t from =
   return std::string_view::npos;
 }
 
-/// True if the name matches a pattern, in which a * stands for any characters. After a mismatch,
-/// the last * takes one character more.
+/// True if the name matches the pattern; a * in the pattern stands for any characters. After a
+/// mismatch, the last * takes one more character.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
   while (n < name.size()) {
@@ -68,7 +68,8 @@ std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view patte
   return out;
 }
 
-/// True if the pattern is the name of one of the `objects` that it matches, but not of all.
+/// True if the pattern is the name of some of the `objects`, but not of all. It matches all of
+/// them.
 bool doubtful(const Scene& scene, std::string_view pattern,
               const std::vector<std::uint32_t>& objects) {
   const auto named = std::ranges::count_if(
@@ -78,7 +79,7 @@ bool doubtful(const Scene& scene, std::string_view pattern,
 
 constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
 
-/// The end of a remedy: the name that was probably meant, and some names of objects.
+/// Returns the end of a remedy: the name that was probably meant, and some names of objects.
 std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> known;
@@ -93,7 +94,6 @@ std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   return out + (scene.objects.size() > kShown ? ", ..." : "");
 }
 
-/// All pairs of an object of `first` and a different object of `second`.
 std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
                                  const std::vector<std::uint32_t>& second) {
   std::vector<ObjectPair> out;
@@ -105,8 +105,8 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
   return in_order(std::move(out));
 }
 
-/// Appends the pairs of objects that names.text stands for. Each colon is tried as the one between
-/// the two names.
+/// Appends the pairs of objects that names.text stands for. One colon separates the two names; each
+/// colon in the text is tried.
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;

@@ -9,7 +9,7 @@ let view = null, answer = null, loading = 0;
 
 const stepsOf = (method) => about.steps.filter((step) => step.method === method);
 
-// The step of the state, at the resolution nearest to the requested one.
+// Returns the step of the chosen method with the resolution nearest to the requested resolution.
 function currentStep() {
   const steps = stepsOf(state.method);
   const far = (step) => Math.abs(step.resolution - Math.min(state.resolution, 1e9));
@@ -38,7 +38,7 @@ function showLegend() {
   byId("legend").replaceChildren(...rows.map(([colour, text]) => legendLine(css(colour), text)));
 }
 
-// The pairs of the chosen triangle, each a button that chooses the other triangle.
+// Lists the pairs of the chosen triangle. Each pair is a button that chooses the other triangle.
 const MOST_SHOWN = 200;
 function showChosen() {
   const box = byId("chosen");
@@ -144,7 +144,7 @@ function showControls() {
   }
 }
 
-// Loads and shows the answer for the state, unless another answer was requested meanwhile.
+// Loads the answer for the state. Shows this answer unless another one was requested meanwhile.
 async function update() {
   const turn = ++loading;
   const step = currentStep();
@@ -189,7 +189,8 @@ function setResolution(by) {
   update();
 }
 
-// Chooses the missed triangle after the chosen one; if none is missed, the colliding one after it.
+// Chooses the next missed triangle after the chosen triangle. If the step missed no pair, chooses the
+// next colliding triangle.
 function next() {
   let first = -1, after = -1;
   const any = answer.step.missedPairs === 0;
@@ -256,7 +257,7 @@ function onKey(event) {
   event.preventDefault();
 }
 
-// Shows the flat picture in place of the scene, and the reason.
+// Shows the flat picture in place of the scene, with the reason `why`.
 function standIn(why) {
   document.documentElement.classList.add("flat");
   byId("trouble").hidden = false;

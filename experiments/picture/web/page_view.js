@@ -1,6 +1,6 @@
 // Unpacks the scene of a page, and draws it with three.js and WebGL 2. Every triangle has three corners
-// of its own, so that gl_VertexID / 3 is its number. Two textures hold what may change: one byte of
-// state for each triangle, and a place for each object. The unit of length is half the largest extent
+// of its own, so that gl_VertexID / 3 is its number. The texture `states` has a byte for each triangle,
+// and the texture `places` has a place for each object. The unit of length is half the largest extent
 // of the scene's box; the middle of the box is the origin.
 
 const byId = (id) => document.getElementById(id);
@@ -44,13 +44,13 @@ uniform vec3 ratio;
 uniform vec3 palette[8];
 uniform vec3 found, missed, idle, chosen, partner;
 uniform float idlePart, explode, lift, pointSize, through;
-uniform int part;  // 0: all triangles, 1: collisions through what hides them, 2: missed, 3: chosen
-in vec4 position;  // 0 to 1 in the scene's box; w: object / 65535
+uniform int part;  // draws 0: all triangles, 1: collisions over the rest, 2: missed, 3: chosen
+in vec4 position;  // xyz: 0 to 1 in the scene's box; w: number of the object / 65535
 out vec3 placed, seen;
 flat out vec4 paint;
 flat out int shaded;
 flat out int number;
-flat out int ghost;  // drawn in every fourth pixel, so that what lies behind is seen
+flat out int ghost;  // 1: only every fourth pixel is drawn, so the triangle is see-through
 void main() {
   int object = int(position.w * 65535.0 + 0.5);
   number = gl_VertexID / 3;
@@ -105,7 +105,6 @@ function shareOf(colour) {
 }
 
 class SceneView {
-  // Throws if the browser has no WebGL 2.
   constructor(canvas, about) {
     const context = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
     if (!context) throw new Error("This browser has no WebGL 2 here.");
@@ -189,7 +188,7 @@ class SceneView {
     this.setIndices();
   }
 
-  // Sets the places to which an exploded view moves the objects: away from the middle of the scene.
+  // Sets the places of the objects in an exploded view. Objects move away from the middle of the scene.
   // Objects in the middle move in different directions.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
@@ -222,7 +221,6 @@ class SceneView {
     this.places.needsUpdate = true;
   }
 
-  // Sets the state of every triangle, which decides what is drawn over the scene.
   setStates(states) {
     this.states.image.data.set(states);
     this.states.needsUpdate = true;
@@ -237,8 +235,8 @@ class SceneView {
     return geometry;
   }
 
-  // The corners of the faces, edges or points of all triangles whose state has one of the bits. A
-  // triangle has one point, its first corner.
+  // Returns the corners of the faces, edges or points (`kind`) of each triangle whose state has one of
+  // `bits`. A triangle has one point: its first corner.
   indexOf(bits, kind) {
     const data = this.states.image.data, out = [];
     for (let t = 0; t < this.triangles; ++t) {
@@ -280,7 +278,7 @@ class SceneView {
     some(CHOSEN, 3, ["faces", "edges", "points"], 7);
   }
 
-  // Looks along the direction from the eye to the middle, -towards, so that all of the points fit.
+  // Looks along the direction -towards, and zooms so that all points fit into the view.
   fit(points, towards) {
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(towards).multiplyScalar(30);
@@ -313,7 +311,7 @@ class SceneView {
     return out;
   }
 
-  // The position of a triangle's corner (0 to 2) as displayed.
+  // Returns the displayed position of a triangle's corner k (0 to 2).
   corner(triangle, k) {
     const a = this.points.array, i = 4 * (3 * triangle + k), ratio = this.uniforms.ratio.value;
     const p = new THREE.Vector3(a[i], a[i + 1], a[i + 2]).multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
@@ -326,7 +324,7 @@ class SceneView {
     return p.multiplyScalar(1 / 3);
   }
 
-  // The triangle's middle in the canvas, in CSS px.
+  // Returns the place of the triangle's middle on the canvas, in CSS px.
   project(triangle) {
     const p = this.middle(triangle).project(this.camera);
     const [width, height] = this.size();
@@ -367,13 +365,12 @@ class SceneView {
     this.ask();
   }
 
-  // Moves the view by fractions of its height.
   move(right, up) {
     const by = this.axis(0).multiplyScalar(2 * right / this.camera.zoom);
     this.shift(by.add(this.axis(1).multiplyScalar(2 * up / this.camera.zoom)));
   }
 
-  // The direction to the right (0) or upwards (1) in the picture.
+  // Returns the direction to the right (k = 0) or upwards (k = 1) in the picture.
   axis(k) { return new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k); }
 
   shift(by) {
@@ -398,14 +395,14 @@ class SceneView {
 
   draw() {
     this.asked = false;
-    // Collisions lie on the surfaces, and are drawn 2 px nearer, since both would flicker.
+    // Collisions lie on the surfaces. They are drawn 2 px nearer to the eye, or they would flicker.
     this.uniforms.lift.value = 4 / (this.size()[1] * this.camera.zoom);
     this.renderer.setClearColor(this.paper, 1);
     this.renderer.render(this.scene, this.camera);
     this.onDraw();
   }
 
-  // The visible triangle at (x, y) of the canvas, CSS px; -1 if there is none.
+  // Returns the visible triangle at (x, y) of the canvas, in CSS px; -1 if there is no triangle.
   pick(x, y) {
     const [width, height] = this.size();
     this.camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
@@ -427,8 +424,8 @@ class SceneView {
 
 // ---- the camera and the pointer ----------------------------------------------------------------
 
-// cameraText() is the place of the camera; `fitted` is its place after resetView(). When the window is
-// resized, the view is reset if the reader has not moved the camera.
+// cameraText() returns the place of the camera; `fitted` is the place after resetView(). When the window
+// is resized, the view is reset if the reader has not moved the camera.
 const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
 let fitted = "";
 
@@ -438,7 +435,6 @@ function resetView() {
   fitted = cameraText();
 }
 
-// The keys of the camera, on every page.
 const VIEW_KEYS = {
   ArrowLeft: (shift) => (shift ? view.move(-0.05, 0) : view.turn(-0.1, 0)),
   ArrowRight: (shift) => (shift ? view.move(0.05, 0) : view.turn(0.1, 0)),
@@ -483,7 +479,7 @@ function connectCanvas() {
   view.onDraw = markReady;
 }
 
-// Notes when the page was first drawn, for tests.
+// Stores in the page when it was first drawn, for tests.
 function markReady() {
   if (view) view.onDraw = () => {};
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
@@ -498,7 +494,7 @@ function showPaper() {
 
 // ---- data ---------------------------------------------------------------------------------------
 
-// The bytes of a block: Base64 of gzip.
+// Returns the bytes of a block of the page. The block is Base64 of gzip of the bytes.
 async function bytesOf(name) {
   const text = atob(byId(name).textContent);
   const small = new Uint8Array(text.length);
@@ -507,7 +503,7 @@ async function bytesOf(name) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Numbers of 32 bits, stored as differences by byte (experiments/picture/picture.h).
+// Returns the numbers of a block that packed_numbers() wrote (experiments/picture/picture.h).
 async function numbersOf(name) {
   const bytes = await bytesOf(name), n = bytes.length / 4;
   const out = new Uint32Array(n);
@@ -532,7 +528,8 @@ async function loadFrame() {
   return { positions, a, b, contacts, corners, objects, triangles, owner };
 }
 
-// The pairs that a step missed (a byte each), and the triangles that it kept in vain (a bit each).
+// Returns which pairs a step missed (a byte for each pair), and which triangles it kept in vain (a bit
+// for each triangle).
 async function loadStep(step) {
   const lost = step.missed ? await numbersOf(step.missed) : [];
   const missed = new Uint8Array(frame.a.length);

@@ -17,8 +17,8 @@ that has no answer raises :class:`InputError` or :class:`Error` with ``where``, 
 import errno as _errno
 import os
 
-# Mesa's llvmpipe draws without threads: they may damage the memory of this process. Mesa reads the
-# variable when a display is opened. A value set by the caller stays, and reports name it.
+# Makes Mesa's llvmpipe draw without threads, since its threads may damage the memory of this process. Mesa
+# reads the variable when a display is opened. If the caller has set a value, it stays, and reports name it.
 os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
@@ -57,7 +57,7 @@ except ImportError as error:  # pip cannot install libraries of the system
         "zlib1g)"
     ) from error
 
-_farcull.require_main_interpreter()  # before the import of numpy, which needs it too
+_farcull.require_main_interpreter()  # before numpy is imported: numpy needs the main interpreter as well
 
 from ._clash import Clash, clash, show
 from ._collide import KINDS, Collider, Report, Result, collide, join

@@ -11,7 +11,7 @@ from . import InputError
 
 
 def read(name: str, given: Any, remedy: str) -> np.ndarray:
-    """The argument as numpy reads it; through DLPack if it has no ``__array__``."""
+    """Returns the argument as a numpy array. An argument without ``__array__`` is read through DLPack."""
     if isinstance(given, np.ma.MaskedArray):
         raise InputError(name, "are a masked array", "give an array without a mask")
     if isinstance(given, np.ndarray):
@@ -30,8 +30,8 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
 
 
 def array(name: str, given: Any) -> np.ndarray:
-    """Vertices ("V") as contiguous doubles, or triangles ("F") as contiguous int64 or uint32. They are copied only if
-    they are not so. An empty list becomes (0, 3)."""
+    """Returns vertices ("V") as contiguous doubles, and triangles ("F") as contiguous int64 or uint32. An array that
+    has this form is not copied. An empty list becomes (0, 3)."""
     if hasattr(given, "faces") or hasattr(given, "cells"):
         raise InputError(name, "is a mesh", "give V, F and object_starts of farcull.join(mesh, ...)")
     out = read(name, given, "give rows of three numbers")
@@ -63,7 +63,7 @@ def _refuse_rounding(name: str, given: np.ndarray) -> None:
 
 
 def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of a mesh: a pair of arrays, or an object that has them."""
+    """Returns vertices and triangles of a mesh, which is a pair of arrays or an object with such arrays."""
     remedy = "give (V, F), or an object with vertices and faces, or with points and cells"
     if isinstance(given, (tuple, list)) and len(given) == 2:
         V, F = given
@@ -92,8 +92,8 @@ class Grouped:
 
     def __init__(self, F: Any, object_starts: Any, labels: Any) -> None:
         self.triangles = array("F", F)
-        self.labels: Optional[np.ndarray] = None  # of the objects; None without labels
-        self.order: Optional[np.ndarray] = None  # numbers of the caller's triangles; None: as given
+        self.labels: Optional[np.ndarray] = None  # a label for each object; None without labels
+        self.order: Optional[np.ndarray] = None  # the caller's number of each triangle; None: not reordered
         if labels is None:
             self.starts = _starts(object_starts)
             return
@@ -110,8 +110,8 @@ class Grouped:
             self.order, self.triangles = order, self.triangles[order]
 
     def pairs(self, pairs: np.ndarray, *others: Any) -> Tuple[Any, ...]:
-        """The pairs in the caller's numbers, with sorted rows; and the others, arrays or None, in the order of the
-        rows."""
+        """Returns the pairs in the caller's numbers, with sorted rows. The rows of ``others`` (arrays or None) are put
+        into the same order."""
         if self.order is None:
             return (pairs, *others)
         named = np.sort(self.order[pairs], axis=1).reshape(-1, 2)
@@ -119,7 +119,7 @@ class Grouped:
         return (named[by], *(None if other is None else other[by] for other in others))
 
     def objects(self, pairs: np.ndarray) -> np.ndarray:
-        """The objects of triangles, which have the caller's numbers; as labels if there are labels."""
+        """Returns the object of each triangle, as a label if there are labels. ``pairs`` has the caller's numbers."""
         if self.order is not None:
             place = np.empty(len(self.order), np.int64)
             place[self.order] = np.arange(len(self.order))
@@ -128,7 +128,7 @@ class Grouped:
         return out if self.labels is None else self.labels[out]
 
     def ignored(self, given: Any) -> Any:
-        """Pairs of objects, which are given by labels if there are labels, as pairs of numbers."""
+        """Returns pairs of objects as pairs of numbers. If there are labels, ``given`` names objects by labels."""
         if self.labels is None or given is None:
             return given
         remedy = "give labels, as in [(3, 7)]"
@@ -146,7 +146,7 @@ class Grouped:
 
 
 def poses(given: Any) -> np.ndarray:
-    """Matrices as (k, 3, 4) doubles; None stands for no poses."""
+    """Returns matrices as (k, 3, 4) doubles. None means no poses."""
     if given is None:
         return np.empty((0, 3, 4))
     remedy = "give a matrix of 4 x 4 numbers for each object, whose last row is 0, 0, 0, 1"
@@ -168,8 +168,8 @@ Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def arrays(
     V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Union[Grouped, None, bool] = False
 ) -> Tuple[Grouped, Arrays]:
-    """The input of a call. ``before``: the grouped triangles of the call before, whose arrays move if poses are given
-    alone; None if there are none; False: poses cannot be given alone."""
+    """Returns the input of a call. ``before``: the grouped triangles of the previous call; poses alone move these
+    triangles. None: there are no such triangles. False: this call does not accept poses alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
     if alone and isinstance(before, Grouped) and len(matrices):
@@ -185,8 +185,8 @@ def arrays(
 
 
 def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
-    """The answer of the compiled collider or finder of ``owner``. ``owner._grouped`` becomes ``grouped``, unless a
-    signal handler called the owner meanwhile: then that call was the last one."""
+    """Returns the answer of the compiled collider or finder of ``owner``. Sets ``owner._grouped`` to ``grouped``,
+    unless a signal handler called the owner meanwhile: then the handler's call was the last call."""
     turn = object()
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
@@ -204,7 +204,7 @@ def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str,
 
 
 def _starts(given: Any) -> np.ndarray:
-    """The first triangle of each object; None stands for one object. The library checks them."""
+    """Returns the first triangle of each object. None means one object. The library checks the numbers."""
     if given is None:
         return np.zeros(0, np.int64)
     out = read("object_starts", given, "give whole numbers")
@@ -255,7 +255,7 @@ def text(name: str, given: Any) -> str:
 
 
 def encoded(name: str, given: str) -> str:
-    """The text. Raises InputError if UTF-8 cannot hold it."""
+    """Returns the text. Raises InputError if UTF-8 cannot hold the text."""
     try:
         given.encode()
     except UnicodeEncodeError:
@@ -270,7 +270,7 @@ def choice(name: str, given: Any, choices: Sequence[str]) -> str:
 
 
 def selves(given: Any) -> Tuple[bool, List[bool]]:
-    """Whether all objects are tested against themselves; or else a truth value for each."""
+    """Returns whether all objects are tested against themselves, and a list: a truth value for each object, or empty."""
     if isinstance(given, (bool, np.bool_)):
         return bool(given), []
     try:
@@ -282,8 +282,8 @@ def selves(given: Any) -> Tuple[bool, List[bool]]:
 
 
 def ignored(given: Any, scene: Any = None) -> List[List[int]]:
-    """Pairs of different objects, given by numbers or, with a compiled scene, by patterns of their names. Without a
-    scene the library refuses numbers that no object has."""
+    """Returns pairs of different objects. They are given by numbers; with a compiled ``scene`` patterns of names are
+    accepted as well. Without a scene, the library refuses numbers that no object has."""
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
@@ -310,12 +310,12 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
 
 
 def limit(given: Any) -> int:
-    """The limit as the library takes it: 0 for all pairs."""
+    """Returns the limit for the library, which takes 0 for all pairs."""
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
 
 
 def weld(given: Any, name: str = "weld") -> str:
-    """A tolerance as the library reads it; empty for None."""
+    """Returns a tolerance as a text for the library; an empty text for None."""
     if given is None:
         return ""
     text = _text_of(name, given)
@@ -325,7 +325,7 @@ def weld(given: Any, name: str = "weld") -> str:
 
 
 def texts(**options: Any) -> Dict[str, str]:
-    """Options as texts; True becomes an empty text, None and False are left out."""
+    """Returns options as texts. True becomes an empty text. None and False are left out."""
     out = {}
     for name, value in options.items():
         if value is None or value is False:
@@ -353,7 +353,7 @@ def _text_of(name: str, value: Any) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """As in "1 pair" and "2 pairs"."""
+    """Returns a text such as "1 pair" or "2 pairs"."""
     return f"{count} {noun}" + ("" if count == 1 else "s")
 
 

@@ -35,7 +35,7 @@ class Clash:
 
     @property
     def clean(self) -> bool:
-        """Whether every pair was examined, and none is a clash, contained or unknown."""
+        """True if every pair was examined, and no pair is a clash, contained or unknown."""
         return self._json["clean"]
 
     def json(self) -> Dict[str, Any]:
@@ -87,11 +87,11 @@ def show(
 ) -> str:
     """Writes a page on which the answer can be turned and explored, and opens it in the browser.
 
-    - ``what``: a :class:`Clash`: the objects of each pair, and where they cross. A :class:`Record`, a :class:`Scene`
-      or a :class:`Result` of :func:`collide`: the triangles that collide, and with a Record those that its method
-      missed.
-    - ``path``: of the page; None: a new temporary file, which stays.
-    - ``browse``: False: only writes the page.
+    - ``what``: the answer. For a :class:`Clash` the page shows the objects of each pair, and where they cross. For a
+      :class:`Scene`, a :class:`Result` of :func:`collide` or a :class:`Record` it shows the triangles that collide;
+      for a Record it marks those that the method missed.
+    - ``path``: the file to write; None: a new temporary file, which is not deleted.
+    - ``browse``: False: the page is written, but not opened.
 
     Returns the path. All pages but that of a Clash need OpenGL; Mesa's software device will do. Raises InputError if
     no page can show the answer, and Error.

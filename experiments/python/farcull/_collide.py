@@ -29,10 +29,10 @@ class Report:
 
     candidates_ms: float  # wall clock, from the input to the candidates
     exact_ms: float  # wall clock of the exact tests
-    candidates: int  # without those of ignored objects
-    decided: int  # candidates that exact tests decided; fewer if the limit was reached before
+    candidates: int  # pairs of ignored objects are not counted
+    decided: int  # candidates that exact tests decided, until the limit was reached
     neighbours: int  # decided candidates that are neighbours, colliding or not
-    contacts_ms: float  # wall clock of the kinds of contact
+    contacts_ms: float  # wall clock of finding the kinds of contact
     passed_over: int  # vertices that are not finite and that no triangle uses
     callers_arithmetic: str  # how the calling thread rounds and flushes, if that is unusual; else empty
     stages: List[Dict[str, Any]]
@@ -62,14 +62,14 @@ class Result:
     complete: bool
     """False: the limit was reached, and more pairs may follow the last one. No pair before it is missing."""
     report: Report
-    # Vertices, grouped triangles and self of collide(), for show(); None if a page would show other pairs.
+    # The arguments of collide() for show(): vertices, grouped triangles, self. None if a page would show other pairs.
     _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
     _neighbour_objects: Optional[NDArray[Any]] = field(default=None, repr=False)  # None: objects were not given
 
     def to_pandas(self) -> Any:
-        """A DataFrame with a row for each pair, sorted: ``a``, ``b`` and ``neighbours``; ``object_a`` and
-        ``object_b`` if objects were given; ``contact``, the kind, and ``x0`` to ``z1``, the ends of the segment, if
-        they were asked for."""
+        """Returns a DataFrame with a row for each pair, sorted. Columns: ``a``, ``b`` and ``neighbours``; if objects
+        were given, ``object_a`` and ``object_b``; with kinds, ``contact``; with segments, ``x0`` to ``z1``, the ends
+        of the segment."""
         pairs = np.concatenate([self.pairs, self.neighbour_pairs])
         order = np.lexsort((pairs[:, 1], pairs[:, 0]))
         columns: Dict[str, Any] = {"a": pairs[order, 0], "b": pairs[order, 1], "neighbours": order >= len(self.pairs)}
@@ -95,12 +95,12 @@ class Result:
 
 
 def ends(points: NDArray[np.float64], *names: str) -> Dict[str, NDArray[np.float64]]:
-    """Two points in each row (k, 2, 3) as columns."""
+    """Returns a column for each coordinate of two points in each row (k, 2, 3)."""
     return {x + name: points[:, e, i] for e, name in enumerate(names) for i, x in enumerate("xyz")}
 
 
 def pandas() -> Any:
-    """The module, if it is there."""
+    """Returns the module pandas. Raises Error if it is not installed."""
     try:
         import pandas
     except ImportError:
@@ -111,9 +111,9 @@ def pandas() -> Any:
 class Collider:
     """Finds colliding pairs again and again, as for the frames of an animation, with the answers of :func:`collide`.
 
-    A collider keeps its memory from call to call, and its results about triangles that did not move if the triangles
-    and objects stay the same. One thread at a time may use it. It takes the options of :func:`collide` by name;
-    ``ignore`` has numbers alone. Raises InputError naming the option that is wrong.
+    A collider keeps its memory from call to call. If the triangles and objects stay the same, it keeps its results
+    about triangles that did not move. One thread at a time may use it. It takes the options of :func:`collide` by
+    name; ``ignore`` has numbers alone. Raises InputError naming the option that is wrong.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -134,7 +134,7 @@ class Collider:
             "ignore": _arguments.ignored(ignore),
             "limit": _arguments.limit(limit),
         }
-        collider._grouped: Any = None  # of the call before, if it had an answer; else None
+        collider._grouped: Any = None  # triangles of the previous call; None if it had no answer
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(question)
 
@@ -145,9 +145,9 @@ class Collider:
     ) -> Result:
         """The pairs that collide. V, F, object_starts, labels and poses are the parameters of :func:`collide`.
 
-        ``find(poses=...)`` alone moves the arrays of the call before, unless that call itself raised an exception.
-        Raises InputError for arrays that are not so, if there is nothing to test, and if ``ignore`` names an object
-        that is not there; and MemoryError. The collider can be used again after each, and after Ctrl-C.
+        ``find(poses=...)`` alone moves the arrays of the previous call, unless that call raised an exception.
+        Raises InputError for wrong arrays, if there is nothing to test, and if ``ignore`` names an object that does
+        not exist. Raises MemoryError. After an exception and after Ctrl-C the collider can be used again.
         """
         before, self._grouped = self._grouped, None
         grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, before)
@@ -180,7 +180,7 @@ def collide(
     labels: Optional[ArrayLike] = None, segments: bool = False,
     poses: Optional[ArrayLike] = None,
 ) -> Result:
-    """All pairs of triangles that collide: of different objects, and of objects that are tested against themselves.
+    """Returns all pairs of triangles that collide: of different objects, and of objects tested against themselves.
     For many frames, keep a :class:`Collider`.
 
     Parameters
@@ -196,8 +196,8 @@ def collide(
     contacts: True: also give for each pair how the two triangles meet (:data:`KINDS`).
     ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers from 0; with
         ``labels`` by their labels.
-    limit: how many pairs to find, neighbours among them, from the first row on; 1 or more. None: all. Not with
-        ``labels``.
+    limit: at most this many pairs are found, those of the first rows; neighbours count. 1 or more; None: all pairs.
+        Not with ``labels``.
     labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any order. The
         objects are numbered by their labels in ascending order.
     segments: True: as ``contacts``, and also give the points that the two triangles have in common.
@@ -205,8 +205,8 @@ def collide(
         vertex. Each product and sum of a coordinate is rounded, from left to right; the answer is exact for the
         points that come out.
 
-    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for arguments that are
-    not so, and if there is nothing to test; and MemoryError.
+    Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for wrong arguments,
+    and if there is nothing to test. Raises MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     if limit is not None and labels is not None:

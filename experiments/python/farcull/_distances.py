@@ -23,10 +23,10 @@ is not closed; "unknown" if they meet, or if it was not asked for."""
 
 @dataclass(frozen=True)
 class Distance:
-    """The distance of two objects, or with kind="all" of two triangles."""
+    """The distance of two objects; with kind="all" the distance of two triangles."""
 
     objects: Tuple[Any, Any]  # numbers from 0, or labels
-    triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
+    triangles: Tuple[int, int]  # the first nearest pair; numbered as in Result.pairs
     distance: float  # rounded to nearest; infinity beyond the largest double
     squared: Optional[str]  # "numerator/denominator" in lowest terms, nothing rounded; None without exact=True
     points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
@@ -42,7 +42,7 @@ class Distances(Sequence[Distance]):
     and ``found[found.distance < 1]`` are the Distances below 1."""
 
     objects: NDArray[Any]  # (k, 2) numbers from 0, or labels
-    triangles: NDArray[np.int64]  # (k, 2) the first pair of those that are nearest
+    triangles: NDArray[np.int64]  # (k, 2) the first nearest pair
     distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity beyond the largest double
     squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms; None without exact=True
     points: NDArray[np.float64]  # (k, 2, 3) nearest points, each coordinate rounded
@@ -96,9 +96,9 @@ class Distances(Sequence[Distance]):
 class DistanceFinder:
     """Finds distances again and again, as for the frames of an animation, with the answers of :func:`distances`.
 
-    The nearest triangles of one call are the first guess of the next call, which saves time if little moved; any
-    other scene may follow too. A finder takes the options of :func:`distances` by name. One thread at a time may use
-    it.
+    The nearest triangles of one call are the first guess of the next call. This saves time if little moved, but the
+    next call may be about any other scene. A finder takes the options of :func:`distances` by name. One thread at a
+    time may use it.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -118,7 +118,7 @@ class DistanceFinder:
         if which != "nearest" and wanted != 1:
             raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
         pairs = _arguments.ignored(ignore)
-        finder._grouped: Any = None  # of the call before, if it had an answer; else None
+        finder._grouped: Any = None  # triangles of the previous call; None if it had no answer
         finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
             which, wanted, limit, all_objects, each, _arguments.flag("inside", inside), pairs,
@@ -130,8 +130,8 @@ class DistanceFinder:
         object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
         poses: Optional[ArrayLike] = None,
     ) -> Distances:
-        """The distances. The parameters are those of :func:`distances`; poses alone move the arrays of the call
-        before. The finder can be used again after an error, and after Ctrl-C."""
+        """Returns the distances. The parameters are those of :func:`distances`. Poses alone move the arrays of the
+        previous call. The finder can be used again after an error, and after Ctrl-C."""
         before, self._grouped = self._grouped, None
         if labels is not None and self._ignores:
             raise InputError(
@@ -158,27 +158,27 @@ def distances(
     labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
     poses: Optional[ArrayLike] = None, exact: bool = False,
 ) -> Distances:
-    """The distances of objects, with the points that are nearest. For many frames, keep a :class:`DistanceFinder`.
+    """Returns the distances of objects and their nearest points. For many frames, keep a :class:`DistanceFinder`.
 
     Parameters
     ----------
     V, F, object_starts, labels, poses: as in :func:`collide`. With ``labels`` the objects of an answer are labels.
     kind: "objects": of every two objects; "nearest": of each object and its ``k`` nearest others; "all": every pair
         of triangles at the distance ``within`` or less.
-    k: how many others, 1 or more; with "nearest" alone.
-    within: the largest distance that is answered. World units, 0 or more; None: no limit. "all" needs a limit.
-    self: True: also pairs of triangles of one object, without its neighbours, which share a vertex position; or one
-        truth value for each object. Not with "nearest".
-    inside: whether to find out if an object lies inside another, by winding numbers.
+    k: how many nearest objects to find, 1 or more; only with "nearest".
+    within: larger distances are left out. World units, 0 or more; None: no limit. "all" needs a limit.
+    self: True: each object is measured against itself as well, without neighbours (triangles that share a vertex
+        position); or one truth value for each object. Not with "nearest".
+    inside: True: find out by winding numbers if an object lies inside another.
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
-    exact: True: ``squared`` as well, and with "all" each number is the exact one, rounded once, which takes about ten
-        times as long. False, with "all": the pairs are exact; a distance is off by at most 2^-32 of itself (0 only if
-        the triangles meet), a normal by 2^-15, and a point is off its triangle by 2^-45 of the pair's extent. If
-        several points are nearly as near, others may be given than with True.
+    exact: True: also give ``squared``. With "all", each number is then the exact one, rounded once; this takes about
+        ten times as long. False, with "all": the pairs are exact; a distance is off by at most 2^-32 of itself (0 only
+        if the triangles meet), a normal by at most 2^-15, and a point is off its triangle by at most 2^-45 of the
+        pair's extent. Among points that are nearly as near, True and False may choose different ones.
 
     Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the labels.
-    Raises InputError naming the argument that is wrong, also if there is nothing to ask; and MemoryError.
+    Raises InputError, which names the wrong argument, or if there is nothing to measure. Raises MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(

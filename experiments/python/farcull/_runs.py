@@ -103,7 +103,7 @@ class Check:
     reason: str  # empty if proved
     pair: Optional[Tuple[int, int]]  # the pair that the reason is about, if it is about one pair
     decided: bool  # whether all pairs were decided; False for a certificate of another scene
-    pairs: NDArray[np.int64]  # (k, 2): the pairs that meet, neighbours among them, by the checker
+    pairs: NDArray[np.int64]  # (k, 2): the pairs that meet, found by the checker; with neighbours
     culled_meeting: int  # how many pairs the certificate calls culled although they meet
     unattested: List[str]  # claims that no check can prove
     text: str  # as ``farcull check`` prints it
@@ -123,11 +123,11 @@ def check(
     """Proves or refutes a certificate, a list of pairs, or both, with integers alone.
 
     - ``certificate``: the text of :meth:`Record.certificate`.
-    - ``pairs``: (k, 2) triangles, in any order: are these all that meet, neighbours among them?
-    - ``clearance``: of the list; default 0, or that of the certificate.
+    - ``pairs``: (k, 2) triangles, in any order: are these all pairs that meet, neighbours included?
+    - ``clearance``: the clearance of the list; default: that of the certificate, or 0 without a certificate.
 
-    Raises InputError if neither is given or if the scene lacks a triangle of the pairs, and Error for a certificate
-    that is not of the form.
+    Raises InputError if neither certificate nor pairs are given, or if the scene lacks a triangle of the pairs.
+    Raises Error for a malformed certificate.
     """
     if certificate is None and pairs is None:
         raise InputError("certificate", "is not given, nor are pairs", "give one of them, or both")
@@ -151,7 +151,7 @@ class Picture:
     """A picture of the answers of methods, a panel for each."""
 
     pixels: NDArray[np.uint8]  # (height, width, 4): red, green, blue, opacity; rows from the top
-    panels: List[Dict[str, Any]]  # title, headline and counts of each
+    panels: List[Dict[str, Any]]  # title, headline and counts of each panel
     html: str  # the page; empty if it was not asked for
 
 

@@ -28,7 +28,7 @@ def _names(names: Tuple[Any, ...]) -> List[str]:
 
 
 def _warn() -> None:
-    """Warns the caller of the package of what readers passed over."""
+    """Warns the package's caller about parts of files that readers passed over."""
     for note in _farcull.take_reading_notes():
         warnings.warn(note, stacklevel=3)
 
@@ -38,9 +38,9 @@ class Scene:
 
     ``Scene("two-bunnies")`` is a built-in scene; ``Scene("a.obj", "b.ply")`` are mesh files, each an object;
     ``Scene("scene.json")`` is a scene file; :meth:`from_arrays` takes arrays. With ``self=True`` every object is tested
-    against itself as well. ``weld`` merges vertices of a mesh at this distance or less, in its units, or relative to
-    the diagonal of its box, as in "1e-7*size". A reader that passes over something warns. Raises Error for files that
-    cannot be read.
+    against itself as well. ``weld`` merges vertices of a mesh at this distance or less: in units of the mesh, or
+    relative to the diagonal of its box, as in "1e-7*size". Warns if parts of a file are passed over. Raises Error for
+    files that cannot be read.
     """
 
     __slots__ = ("_scene",)
@@ -74,7 +74,7 @@ class Scene:
         self: Union[bool, Sequence[bool]] = False, name: str = "arrays",
         names: Optional[Sequence[str]] = None,
     ) -> Scene:
-        """A scene of copies of the arrays of :func:`collide`. ``names``: of the objects; default "0", "1" and so on.
+        """Returns a scene with copies of the arrays. ``names``: names of the objects; default "0", "1" and so on.
         Raises InputError as :func:`collide` does."""
         _, given = _arguments.arrays(V, F, object_starts, None, None)
         all_objects, each = _arguments.selves(self)

@@ -9,15 +9,15 @@ LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
 
 
 def with_groups(rows):
-    """Rows with their scene without its seed, their form without the size, and whether they have a size; `own` are
-    those of the first seed of a group, which is the scene's own."""
+    """Returns the rows with more columns: `group`, the scene without its seed; `form`, the contestant without a size;
+    `sized`, whether the row has a size; `own`, whether the row is of the first seed of its group."""
     rows = rows.assign(group=rows.scene.map(scene_base), sized=rows.method.str.contains("@"),
                        form=[without_size(row) for row in rows.itertuples()])
     return rows.assign(own=rows.scene == rows.groupby("group").scene.transform("first"))
 
 
 def colliding_of(group):
-    """The colliding pairs of a scene; for several seeds the median with the least and the most."""
+    """Returns the number of colliding pairs of a scene; for several seeds the median with the least and the most."""
     values = [number(next(rows.itertuples()), "colliding") for _, rows in by(group, "scene")]
     return rounded(values[0]) if len(set(values)) == 1 else spread(values)
 
@@ -25,7 +25,7 @@ def colliding_of(group):
 # ---- figures
 
 def lines_of(group, seeds):
-    """Missed pairs of each contestant: the median over the seeds at each resolution, with the least and the most."""
+    """Returns the missed pairs of each contestant by resolution: the median over the seeds, the least and the most."""
     out = []
     for name, rows in by(group, "contestant"):
         missed = rows.assign(missed=column(rows, "missed")).groupby("resolution").missed.agg(
@@ -56,7 +56,7 @@ def missed_figure(rows):
 
 
 def form_group(row):
-    """The series of a run in the figure of all forms; "" for radii that promise nothing."""
+    """Returns the name of a run's series in the figure of all forms; "" for the published radius."""
     if "cullide" not in row.method:
         ours = {"far": "FAR, boxes and exact offsets", "boxes": "Boxes"}
         return "" if row.radius == "published" else ours.get(row.method, "")
@@ -65,7 +65,7 @@ def form_group(row):
 
 
 def kept_figure(rows):
-    """Misses against the candidates left; each point is a run."""
+    """Draws misses against the candidates that are left. Each point is a run."""
     out = Figure("accuracy-kept", "What every form misses, against the candidates that it leaves",
                  "Each point is a run at one resolution; below and to the left is better. The mark is what boxes alone "
                  "leave (exact), which miss nothing and cull nothing. No form is left out: the strict form "
@@ -89,8 +89,8 @@ def kept_figure(rows):
 # ---- tables and findings
 
 def forms_table(chapter, rows):
-    """The forms of CULLIDE, and of S-CULLIDE, which tests objects against themselves, where FAR was not measured: at the
-    scenes and resolutions that all forms have, by missed pairs and then by candidates. Adds which form misses least."""
+    """Returns a table of the forms of CULLIDE, then of S-CULLIDE (which tests objects against themselves), at the scenes
+    and resolutions that all forms have. Sorted by missed pairs, then by candidates. Adds which form misses least."""
     out = Table("accuracy-forms", "Forms of CULLIDE and S-CULLIDE, at the scenes and resolutions that all of a family have: "
                 "missed pairs, and candidates that are left", columns(["form"], ["runs", "missed pairs", "penetrating",
                                                                                  "candidates"]))
@@ -104,7 +104,7 @@ def forms_table(chapter, rows):
         far = rows[rows.contestant == rival]
         exact = rows[rows.method == "exact"].drop_duplicates("scene")
         boxes = dict(zip(exact.scene, column(exact, "candidates")))
-        of_boxes = sum(boxes.get(scene, NONE) for scene, _ in common)  # they have no resolution
+        of_boxes = sum(boxes.get(scene, NONE) for scene, _ in common)  # rows of `exact` have no resolution
         count = counted(len(forms), "form", "forms")
         if common and all(at in far.index for at in common):
             forms.append((rival + ", there", far.loc[common]))
@@ -145,8 +145,8 @@ def add_sums(chapter, rows):
 
 
 def pictures_of(rows):
-    """CULLIDE beside FAR on a scene, at the least resolution where both were measured and CULLIDE missed something.
-    Meshes are easier to see than slivers."""
+    """Returns a picture of CULLIDE beside FAR on a scene, at the least resolution where CULLIDE missed a pair and FAR was
+    measured. Prefers meshes, which are easier to see than slivers."""
     clear = rows.assign(missed=column(rows, "missed"))[rows.resolution >= LEAST_PIXELS]
     fars = clear[(clear.method == "far") & (clear.offset == "obb") & (clear.radius == "budget")]
     both = clear[(clear.method == "cullide") & (clear.missed > 0)].merge(

@@ -3,7 +3,7 @@ from frame import *  # noqa: F403
 
 
 def courses_of(study):
-    """For each stiffness: the rows of boxes by frame, those of FAR, and the number of frames in the grid."""
+    """Returns for each stiffness: the rows of boxes by frame, the rows of FAR, and the number of frames in the grid."""
     def stiffness_of(scene):
         return (scene.split(":") + ["", ""])[2]
 
@@ -18,8 +18,8 @@ def courses_of(study):
 
 
 def gains(pairs):
-    """For each frame whose previous frame is there: its total energy, less that of the previous frame and less the work of
-    the forces that its step left unbalanced, in joules."""
+    """Returns the gain of energy of each frame whose previous frame has a row, in joules: the rise of the total energy, less
+    the work of the forces that the step left unbalanced."""
     rise = column(pairs, "total").diff() - column(pairs, "slack")
     return list(rise[pairs.frame.diff() == 1])
 
@@ -81,8 +81,8 @@ def add_energy(chapter, name, pairs):
 
 
 def culled_pairs(rows):
-    """The per cent of pairs that culling took away, of pairs with overlapping boxes that are no neighbours. No method takes
-    neighbours away. The accounting proved that each pair with overlapping boxes that was not kept is apart."""
+    """Returns how many per cent of the pairs with overlapping boxes culling took away. Neighbours are not counted, since no
+    method takes them away. The accounting proved that each pair that was taken away is apart."""
     removed = total(rows, "by_predicates")
     left = total(rows, "candidates") - total(rows, "neighbour_candidates")
     return share(removed, removed + left)
@@ -103,7 +103,7 @@ def add_power(chapter, rows, name, pairs, far):
 
 
 def add_agreement(chapter, courses):
-    """Adds whether both methods found the same number of pairs, as they must, in the frames of both."""
+    """Adds whether FAR and boxes found the same number of pairs in the frames that both have. They must."""
     both = differ = 0
     for pairs, far, _ in courses.values():
         for row in far.itertuples():

@@ -10,7 +10,7 @@ MOST_BOXES = 90  # per cent of the pairs of boxes; a method that keeps as many i
 
 
 def with_ways(rows):
-    """The rows with the columns way, left and pairs (both without neighbours), and left_each."""
+    """Returns the rows with more columns: way; left and pairs, which do not count neighbours; left_each."""
     left, neighbours, pairs, both = (column(rows, name).fillna(0) for name in (
         "candidates", "neighbour_candidates", "colliding", "neighbours"))
     way = [{"cgal-boxes": BOXES, "fcl-obb": ORIENTED}.get(row.method, OURS) for row in rows.itertuples()]
@@ -32,7 +32,7 @@ def table_of(scenes):
 
 
 def add_join(chapter, scenes):
-    """Adds the scenes where the method keeps nearly what boxes of triangles keep, and those with less."""
+    """Adds the scenes where the method boxes keeps nearly all that boxes of triangles keep, and the other scenes."""
     join, less = [], []
     for scene, ways in scenes.items():
         if BOXES in ways and OURS in ways:

@@ -4,21 +4,21 @@ from store import AXES
 
 
 def compared(first, other):
-    """The rows of the points that both devices have measured; columns of the first end in `_first`."""
+    """Returns the rows of the points that both devices have measured. Columns of the first device end in `_first`."""
     out = other.rows.merge(first.rows, on=AXES, suffixes=("", "_first"))
     return out.assign(differs=[row.counts != row.counts_first for row in out.itertuples()],
                       ratio=column(out, "total_ms") / column(out, "total_ms_first"))
 
 
 def lost(rows, end):
-    """Missed pairs, or violations of the lemmas."""
+    """Returns the number of missed pairs and of violations of the lemmas."""
     lemma = rows.method.str.startswith("lemma")
     return total(rows[~lemma], "missed" + end) + total(rows[lemma], "violations" + end)
 
 
 def fill(chapter, study, device, others):
-    """Adds a table of each method on `device` and on each of the others, which are pairs of a name and a Study, and a
-    finding for each of them. Adds nothing where there are no others."""
+    """Adds a table that compares each method on `device` and on each of the other devices, and a finding for each other
+    device. others: pairs of a device's name and its Study; if there are none, adds nothing."""
     table = Table(
         chapter.study + "-devices",
         f"The same points on other devices than {device}: points that both have measured, those of them at which any "

@@ -8,8 +8,8 @@ NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidate
 
 
 def frames_of(rows):
-    """A line for each frame of a scene, with columns (name, method); NaN if there is no such value. The column (there,
-    method) tells whether there is a row."""
+    """Returns a line for each frame of a scene, with columns (name, method). NaN means that a value is missing. The column
+    (there, method) is 1 if the method has a row for the frame."""
     rows = rows.assign(there=1.0)
     rows = rows.assign(**{name: column(rows, name) for name in NAMES})
     wide = rows.groupby(["frame", "contestant"])[NAMES].last().unstack()
@@ -21,7 +21,8 @@ def measured(frames, method):
 
 
 def factors(frames, method, name, what="kept_triangles"):
-    """For each frame in which the method keeps something, count `name` of I-COLLIDE over count `what` of the method."""
+    """Returns a ratio for each frame in which the method keeps something: count `name` of I-COLLIDE / count `what` of the
+    method."""
     kept = frames[what][method]
     return tuple((frames[name][BOXES] / kept)[kept > 0].dropna())
 
@@ -62,7 +63,7 @@ def table_of(scenes):
 
 def add_factors(chapter, scenes):
     def range_of(method, name):
-        """The median factors of the scenes, ascending, and in words the first and the last."""
+        """Returns the median factors of the scenes, ascending, and a text with the first and the last."""
         of = sorted((median(values), scene) for scene, frames in scenes.items()
                     if (values := factors(frames, method, name)))
         return of, " to ".join(f"{rounded(factor)} ({scene})" for factor, scene in (of[:1] + of[-1:]))

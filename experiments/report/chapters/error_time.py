@@ -7,22 +7,22 @@ from frame import *  # noqa: F403
 OURS = ("FAR (OBB)", "Boxes")
 STRICT = "one round, all views, conservative"  # drawn as "CULLIDE (strict)"
 OWN_TESTS = "FCL and ODE, their own tests"
-MOST_SCENES = 8  # largest number of scenes of the first figure
+MOST_SCENES = 8  # the first figure shows at most this many scenes
 
 
 @dataclass
 class Entry:
-    """A contestant at a resolution, on a scene or on several drawn with different seeds. times: ms of each run, or for
-    several seeds the median of each. The counts are of all seeds; an error is a pair that the answer lacks, or
-    a pair in it that does not collide."""
-    row: object  # of the first seed
+    """A contestant at a resolution, on a scene with one or several seeds. times: ms of each run; with several seeds the
+    median of each seed. Counts are sums over all seeds. An error is a colliding pair that the answer lacks, or a pair in
+    the answer that does not collide."""
+    row: object  # the row of the first seed
     name: str
     times: tuple
     missed: int
     wrong: int
     colliding: int
     candidates: int
-    rounds: tuple = ()  # the times by round; empty: there is one
+    rounds: tuple = ()  # the times by round; empty: there is one round
 
     def __post_init__(self):
         self.rounds = self.rounds or (self.times,)
@@ -36,7 +36,7 @@ class Entry:
 
 @dataclass
 class Group:
-    """A scene without its seeds, with the measurements of all of them."""
+    """A scene, with the measurements of all of its seeds."""
     name: str
     seeds: int
     entries: list
@@ -48,8 +48,8 @@ class Group:
         return self.name + (f" ({words})" if words else "")
 
     def front(self):
-        """The Pareto front: no other entry is as good in both time and error, and better in one. Fastest first; of
-        equal entries only the first."""
+        """Returns the Pareto front, fastest first: the entries for which each faster entry has more errors. Of equal
+        entries only the first is in it."""
         out = []
         for entry in sorted(self.entries, key=lambda e: (e.ms, e.error)):
             if not out or entry.error < out[-1].error:
@@ -57,7 +57,7 @@ class Group:
         return out
 
     def yardstick(self):
-        """The reference for times: boxes and exact tests, without culling."""
+        """Returns the entry of `exact`, the reference for times: boxes and exact tests, without culling."""
         return next((e for e in self.entries if e.row.method == "exact"), None)
 
 
@@ -82,7 +82,7 @@ def groups_of(rows, scenes):
 
 
 def sample_of(groups):
-    """sample_text(), with the seeds of drawn scenes."""
+    """Returns sample_text() with the number of seeds of drawn scenes."""
     rows = [entry.row for group in groups for entry in group.entries]
     runs = pd.DataFrame({"runs": [row.runs for row in rows], "rounds": [row.rounds for row in rows]})
     seeds = sorted({group.seeds for group in groups if group.seeds > 1})
@@ -92,8 +92,8 @@ def sample_of(groups):
 # ---- figures
 
 def cloud(name, points):
-    """A Series of points; each is an Estimate of the time, y, and the resolution. A line connects the resolutions of a
-    method. A point without a resolution is not connected."""
+    """Returns a Series. Each of `points` is an Estimate of the time, y, and the resolution. A line connects the points with
+    a resolution; other points are not connected."""
     out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points",
                  emphasis=name in OURS)
     for time, y, pixels in points:
@@ -108,15 +108,15 @@ def cloud(name, points):
 
 
 def geometric_mean(values):
-    """With the 95 % interval of Student's t in logarithms."""
+    """Returns the geometric mean as an Estimate, with the 95 % interval of Student's t in logarithms."""
     logs = np.log(values)
     reach = student_t95(len(logs) - 1) * logs.std(ddof=1) / math.sqrt(len(logs)) if len(logs) > 2 else 0
     return Estimate(*(math.exp(logs.mean() + part) for part in (0, -reach, reach)), len(logs) if reach else 1)
 
 
 def summary_of(groups):
-    """Points by the name of a method, for methods that were measured on every scene of FAR: the geometric mean of the times
-    as multiples of those of `exact`, and the share of the errors."""
+    """Returns points by the name of a method, for methods that were measured on every scene of FAR. A point is the geometric
+    mean of the ratios to the time of `exact`, and the share of errors."""
     groups = [g for g in groups if g.yardstick() and any(e.name == OURS[0] for e in g.entries)]
     found, out = [{(e.name, e.pixels): e for e in group.entries} for group in groups], {}
     for key in (key for key in (found[0] if len(found) > 1 else ()) if all(key in of for of in found)):
@@ -128,8 +128,8 @@ def summary_of(groups):
 
 
 def error_panels(titles, labels, all_points):
-    """A panel for each scene. Methods that were wrong anywhere in it are points; the others are rows of the strip. The
-    rows are the same in each panel. all_points: for each panel, points by the name of a method."""
+    """Returns a panel for each scene. Methods with an error in a panel are points there; other methods are rows of its
+    strip. Each panel has the same rows. all_points: for each panel, points by the name of a method."""
     shown = sorted({pixels for points in all_points for of in points.values() for *_, pixels in of if pixels > 0})[::2]
     panels, strips = [], []
     for title, label, points in zip(titles, labels, all_points):
@@ -198,8 +198,8 @@ def front_table(groups):
 
 
 def equal_times(group):
-    """For FAR at each resolution: the run of CULLIDE, in any form and at any resolution, that took no longer and has
-    the fewest errors; None if none was as fast."""
+    """Returns for FAR at each resolution the run of CULLIDE with the fewest errors among the runs that took no longer than
+    FAR; None if there is no such run. CULLIDE may have any form and resolution."""
     rivals = [e for e in group.entries if "cullide" in e.row.method]
     return [(far, min((e for e in rivals if e.ms <= far.ms), key=lambda e: e.error, default=None))
             for far in group.entries if far.name == "FAR (OBB)"]
@@ -222,7 +222,7 @@ def equal_table(groups):
 # ---- findings
 
 def add_equal_times(chapter, groups):
-    """Adds in how many cases the best CULLIDE of the same time as FAR misses pairs; the table names each."""
+    """Adds in how many cases the best CULLIDE that takes no longer than FAR misses pairs."""
     cases = [best for group in groups for _, best in equal_times(group)]
     if not cases:
         return
@@ -250,7 +250,7 @@ def fill(chapter, study):
     add_equal_times(chapter, groups)
     if groups:
         add_fastest(chapter, groups)
-    for name in ("fcl-float", "fcl-double", "ode-trimesh"):  # libraries with a test of triangles of their own
+    for name in ("fcl-float", "fcl-double", "ode-trimesh"):  # libraries that have their own test of triangles
         of = rows[rows.method == name]
         if len(of):
             chapter.find(f"{name} misses {of_rows(of, 'missed', 'colliding')} colliding pairs and reports "

@@ -8,12 +8,12 @@ RELIABLE = ("FAR (OBB)", "FAR (exact)", "boxes", "exact")
 
 
 def all_runs(row):
-    """The times of all runs, also of void rounds."""
+    """Returns the times of all runs, in ms. Includes void rounds, in which other programs took the processors."""
     return [ms for of in row.times.get("rounds", ()) for ms in of["ms"]]
 
 
 def ms_of(row):
-    """The median time; of void rounds if there are no others; NaN without any."""
+    """Returns the median time in ms. Uses void rounds only if all rounds are void. NaN if there are no times."""
     runs = row.runs or all_runs(row)
     return median(runs) if runs else NONE
 
@@ -41,7 +41,7 @@ def table_of(scenes):
 
 
 def on_scenes(scenes, text_of):
-    """`1 on two-bunnies and 0 on field`"""
+    """Returns a text such as `1 on two-bunnies and 0 on field`."""
     return listed(f"{text_of(of)} on {scene}" for scene, of in scenes.items())
 
 

@@ -1,7 +1,7 @@
 """What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs, meshes and questions.
 
-Counts of pairs of triangles and of pairs of meshes are never added: the first are questions, each with its answer, the
-second are the parts of one answer about a mesh.
+A labelled pair of triangles is a question with its own answer. Pairs of a mesh are parts of one answer about the mesh. So
+counts of the two are never added.
 """
 import csv
 import os
@@ -14,7 +14,7 @@ SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "re
          "no_memory", "not_asked", "twice", "answered", "differing", "timed", "zero", "not_zero", "negative", "off", "points",
          "points_off"]
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.csv"), encoding="utf-8") as known_file:
-    # How each contestant of ours is called and what its documentation says. Others say it on their cards.
+    # For each method of farcull: how it is called, and what its documentation says. Libraries have cards for this.
     DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
 CARD = ["library", "means", "called", "says", "source", "use"]
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
@@ -25,8 +25,8 @@ QUESTIONS = ["distance", "self", "inside", "clash"]
 # ---- rows and their sums
 
 def with_families(rows):
-    """A row for each family of a row: its contestant, with the sums of its parts, and the parts. `asks` is pairs, meshes or
-    one of QUESTIONS; `family` is as in pairs/random."""
+    """Splits each row into a row for each of its families, with the sums over the family's parts, and the parts. The column
+    `asks` is pairs, meshes or one of QUESTIONS; `family` is a name such as pairs/random."""
     out = []
     for row in rows.itertuples():
         families = {}
@@ -50,7 +50,7 @@ def totals(rows, *names):
 
 
 def deaths(rows):
-    """Questions at which the process crashed, hung or ran out of memory."""
+    """Returns the number of questions at which the process crashed, hung or ran out of memory."""
     return totals(rows, "crashed", "hung", "no_memory")
 
 
@@ -59,15 +59,15 @@ def without_answer(rows):
 
 
 def differing(rows):
-    """`78 of 646`: questions answered differently the second time, of those asked twice."""
+    """Returns a text such as `78 of 646`: of 646 questions that were asked twice, 78 got two different answers."""
     otherwise = total(rows, "differing")
     return of_all(otherwise, total(rows, "twice")) if otherwise else "0"
 
 
 def answers(rows, pairs, own):
-    """Missed pairs, of how many, false alarms, of how many. For pairs the wholes are all answers; for meshes they are the
-    colliding and the reported pairs, since nobody counts the pairs that are apart. own: only answers that the contestant's
-    documentation promises."""
+    """Returns missed pairs, of how many; false alarms, of how many. If `pairs` is true, both are of all answers. For meshes,
+    missed pairs are of the colliding pairs, and false alarms of the reported pairs, since nobody counts pairs that are
+    apart. own: counts only answers that the contestant's documentation promises."""
     asked, missed, false = (total(rows, name) for name in (
         ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
     return missed, asked, false, asked if pairs else asked - missed + false
@@ -76,7 +76,7 @@ def answers(rows, pairs, own):
 # ---- tables
 
 def per_million(count, of):
-    """A rate; "0" is none at all."""
+    """Returns the rate per million as a text; "0" if the count is 0, "-" if there are no cases."""
     return "-" if of == 0 else "0" if count == 0 else rounded(1e6 * count / of)
 
 
@@ -121,7 +121,7 @@ def kinds_table(rows):
 
 
 def faults_of(rows, asks):
-    """How many answers were wrong where the documentation promises the answer, and of how many."""
+    """Returns, of the answers that the documentation promises, how many were wrong, and how many there are."""
     of = rows[rows.asks == asks]
     if asks in ("pairs", "meshes"):
         missed, asked, false, reported = answers(of, asks == "pairs", True)
@@ -130,7 +130,7 @@ def faults_of(rows, asks):
 
 
 def trust_table(rows):
-    """A row for each contestant, those that err least on pairs first."""
+    """Returns a row for each contestant; contestants that err least on pairs come first."""
     def cell(of, asks):
         of = of[of.asks == asks]
         (wrong, asked), silent = faults_of(of, asks), without_answer(of)
@@ -169,7 +169,7 @@ def uses_table(rows):
 
 
 def questions_table(rows):
-    """The faults of distances one by one."""
+    """Returns a table of the faults of distances, with a column for each kind."""
     names = {"zero": "zero", "not zero": "not_zero", "negative": "negative", "off": "off", "points": "points",
              "points off": "points_off"}
     return Table(
@@ -212,7 +212,7 @@ def families_table(rows):
 # ---- figures
 
 def time_figure(rows):
-    """A row for each contestant, first those that err least by what their own documentation promises."""
+    """Draws a row for each contestant. Contestants that err least by their own documentation come first."""
     out, points = Figure(
         "libraries-time", "Wrong answers where the documentation promises the answer, and the time of a question",
         "Each row is a contestant, with the fewest wrong answers first; (ours) marks the methods of farcull. "
@@ -237,7 +237,7 @@ def time_figure(rows):
 # ---- findings
 
 def add_ours(chapter, rows):
-    """Adds the methods of farcull. Of those that promise, a wrong answer breaks the promise, and so does no answer."""
+    """Adds findings about the methods of farcull. If a method promises, a wrong or missing answer breaks its promise."""
     kept, pairs, colliding, meshes, questions = [], [], [], [], 0
     for name, of in by(promising(rows), "method"):
         silent = without_answer(of)
@@ -245,7 +245,7 @@ def add_ours(chapter, rows):
         of_questions = of[~of.asks.isin(["pairs", "meshes"])]
         missed, asked, wrong, _ = answers(of_pairs, True, False)
         lost, known, false, reported = answers(of_meshes, False, False)
-        many = counted(sum(map(len, of_meshes.parts)), "mesh", "meshes")  # each mesh is a part
+        many = counted(sum(map(len, of_meshes.parts)), "mesh", "meshes")
         off = totals(of_questions, "missed", "wrong")
         for bad, what in ((missed, f"of {grouped(asked)} pairs missed"),
                           (wrong, f"of {grouped(asked)} pairs reported wrongly"),
@@ -276,7 +276,7 @@ def add_ours(chapter, rows):
 
 
 def add_others(chapter, rows, asks):
-    """Adds which libraries and tests are right by their own documentation, and those that err most and least."""
+    """Adds which libraries and tests are right by their own documentation, and which ones err most and least."""
     right, wrong, what = [], [], "pairs of triangles" if asks == "pairs" else asks
     for name, of in by(rows[(rows.library != "farcull") & (rows.asks == asks)], "method"):
         bad, asked = faults_of(of, asks)

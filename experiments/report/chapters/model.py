@@ -2,8 +2,8 @@
 from frame import *  # noqa: F403: a chapter uses most of it
 
 FACTOR = 1.5    # a prediction within this factor of what was measured counts as right
-FEWEST = 20     # missed pairs; with fewer the chance of single runs is larger than the factor
-# Scenes that were looked at while the formula was found; all others, and other seeds of these, test it.
+FEWEST = 20     # with fewer missed pairs, the chance of single runs is larger than the factor
+# Scenes that were looked at while the formula was found. All other scenes and seeds test the formula.
 LOOKED_AT = ["random-soup", "needles:100", "slivers:200:1e3", "crowd:200", "shells:8", "two-tori", "tree-leaves:100",
              "torii:720"]
 WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
@@ -11,7 +11,7 @@ WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
 
 
 def way_of(row):
-    """The method with its form; FAR with the offset and the factor on the radius."""
+    """Returns the method with its form; for FAR with the offset and the factor on the radius."""
     if row.method != "far":
         return WAYS.get(row.method, row.method)
     offset = {"obb": "boxes", "exact": "exact offsets"}[row.offset]
@@ -19,8 +19,8 @@ def way_of(row):
 
 
 def with_means(rows):
-    """The rows with the columns way, measured (the mean over positions), share (missed of colliding), ratio and held
-    (whether the scene was not looked at)."""
+    """Returns the rows with more columns: way; measured, the mean of misses over the positions; share, measured / colliding;
+    ratio, expected / measured; held, true if the scene is not in LOOKED_AT."""
     counts = {name: column(rows, name).fillna(0) for name in ("missed_in_all", "positions", "colliding")}
     rows = rows.assign(way=[way_of(row) for row in rows.itertuples()],
                        measured=counts["missed_in_all"] / counts["positions"], held=~rows.scene.isin(LOOKED_AT))
@@ -32,12 +32,12 @@ def judged(rows):
 
 
 def right(rows):
-    """How many predictions are within the factor."""
+    """Returns how many predictions are off by at most the factor FACTOR."""
     return int(rows.ratio.between(1 / FACTOR, FACTOR).sum())
 
 
 def typical_error(rows):
-    """The factor that half of the predictions are off by, or more."""
+    """Returns the median of the factors by which predictions are off."""
     return float(np.exp(np.median(np.abs(np.log(rows.ratio.clip(lower=1e-3)))))) if len(rows) else NONE
 
 
@@ -66,7 +66,7 @@ def figure_of(rows):
 
 
 def resolution_figure(rows):
-    """Missed share against resolution, measured and predicted: why one scene falls and another does not."""
+    """Draws the measured and the predicted share of missed pairs against resolution. The share falls in some scenes only."""
     out = Figure("model-resolution", "Missed pairs fall with resolution as the model says",
                  "CULLIDE until a round changes nothing. Points: the mean over positions, with the fewest and the "
                  "most missed pairs of a position. Lines: the prediction. Where contacts end in corners, the share "

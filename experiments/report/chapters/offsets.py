@@ -34,7 +34,7 @@ def table_of(rows):
 
 
 def beside(rows, a, b):
-    """The rows of a and of b at the same scene and resolution, side by side."""
+    """Returns the rows of contestant a, each joined with the row of contestant b at the same scene and resolution."""
     at = ["scene", "resolution"]
     return rows[rows.contestant == a].merge(rows[rows.contestant == b].drop_duplicates(at), on=at, suffixes=("", "_b"))
 
@@ -53,7 +53,7 @@ def add_comparison(chapter, rows, a, b):
 
 
 def add_order(chapter, rows):
-    """Adds whether the exact offset, whose solid is inside the box, keeps more anywhere: it must not."""
+    """Adds whether the exact offset keeps more than the box anywhere. It must not, since its solid is inside the box."""
     pairs = beside(rows, EXACT, BOX)
     ours, theirs = (column(pairs, "kept_triangles" + end).fillna(0) for end in ("", "_b"))
     for row in pairs[ours > theirs].itertuples():

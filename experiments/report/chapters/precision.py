@@ -4,13 +4,13 @@ from frame import *  # noqa: F403
 
 OURS = "fragment, budget radius"
 BUFFERS = {"fixed24": "24 bits", "float32": "32-bit float"}
-# How far rounding takes a depth, in steps of 2^-24, for 16 bits (experiments/lemma/lemma.cpp, rounding_of).
+# With 16 bits, rounding moves a depth by at most this many steps of 2^-24 (experiments/lemma/lemma.cpp, rounding_of).
 ROUNDING_16 = 0.5 + 1 + 2**24 / (2**16 - 1) + 1
 COUNTS = ("points", "no_sample", "not_bounding", "rounded")
 
 
 def with_axes(rows):
-    """Rows with the source of their depth, the buffer, the generator and the depth of the scene."""
+    """Returns the rows with columns for the source of the depth, the buffer, the generator and the depth of the scene."""
     words = [scene.split(":") for scene in rows.scene]
     return rows.assign(
         line=[("fixed-function, " if mode == "fixed" else "fragment, ") +
@@ -21,13 +21,13 @@ def with_axes(rows):
 
 
 def most(rows, name):
-    """The largest distance; infinite if that of a row is not a number."""
+    """Returns the largest distance; infinite if the distance of a row is not a number."""
     return max(0.0, column(rows, name).fillna(math.inf).max())
 
 
 def drawn(rows):
-    """The value to draw. If all violations are pixels without a sample, there is no distance. Then no point is drawn, since
-    a point at zero would hide the violations."""
+    """Returns the value to draw. If all violations are pixels without a sample, there is no distance. Then no point is drawn,
+    since a point at zero would hide the violations."""
     steps = most(rows, "largest_steps")
     return NONE if steps == 0 and total(rows, "no_sample") else steps
 
@@ -59,7 +59,7 @@ def table_of(rows):
 
 
 def add_violations(chapter, rows):
-    """Adds each violation of fragment depth at the budget radius that is not of a row that promises."""
+    """Adds each violation of fragment depth at the budget radius, unless its row promises (then it is reported already)."""
     for row in rows[rows.line == OURS].itertuples():
         violations = number(row, "no_sample") + number(row, "not_bounding")
         if violations and not breaks(row):  # else reported already
@@ -70,8 +70,8 @@ def add_violations(chapter, rows):
 
 
 def add_deep_windows(chapter, rows):
-    """Adds the violations in deep windows: where a step of the buffer is longer than the chord of the ball at the corner of
-    a pixel, so that the buffer has one number for all depths of a contact."""
+    """Adds the violations in deep windows. There a step of the buffer is longer than the chord of the ball at the corner of
+    a pixel, so all depths of a contact become one number in the buffer."""
     ours = rows[rows.line == OURS]
     chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
     step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # a step of 2^-16, not of 2^-24

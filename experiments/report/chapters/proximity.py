@@ -1,5 +1,5 @@
-"""Sizes of potential neighbour sets, what a grid loses of them, both over frames, time against the number of objects,
-and errors of distances.
+"""Potential neighbour sets: their sizes, what a grid loses of them, both numbers over frames, and time against the number
+of objects. Then errors of distances.
 
 A row is about the sets that a method leaves, or about the distances that a contestant returns. At rest (frame -1) the
 sets of a scene differ by seed and resolution, in motion by frame.
@@ -16,8 +16,8 @@ SUMS = ["with_nearest", "missed", "set_triangles"]
 
 
 def with_names(rows):
-    """The rows with the columns name (of the method), base (the scene without its seed), sets (whether the row is about
-    sets; else about distances), and counts (whether it belongs to the plot over the number of objects)."""
+    """Returns the rows with more columns: name, of the method; base, the scene without its seed; sets, true if the row is
+    about sets, false for distances; counts, true if the row belongs to the plot over the number of objects."""
     return rows.assign(
         name=[NAMES.get(method, method.split(" ")[0]) for method in rows.method],
         base=[scene_base(scene) for scene in rows.scene], sets=~rows.method.str.contains(" (?:nearest|objects)$"),
@@ -26,8 +26,8 @@ def with_names(rows):
 
 
 class SetScene:
-    """The rows of a scene, summed over its seeds, by method and `at`, the resolution or frame. `missed`: objects that lost
-    their nearest neighbour."""
+    """The rows of a scene, summed over its seeds, by method and by `at` (resolution or frame). `missed` counts objects that
+    lost their nearest neighbour."""
 
     def __init__(self, base, rows, at):
         rows = rows.assign(**{name: column(rows, name) for name in SUMS})
@@ -41,7 +41,7 @@ class SetScene:
         return self.sums.at[(method, at), what] if (method, at) in self.sums.index else NONE
 
     def factor(self, method, at, at_boxes):
-        """How many times more triangles the boxes leave than the method; NaN if one of the two is missing."""
+        """Returns triangles that boxes leave / triangles that the method leaves; NaN if a count is missing."""
         kept = self.value(method, at, "set_triangles")
         return self.value(BOXES, at_boxes, "set_triangles") / kept if kept else NONE
 
@@ -55,7 +55,7 @@ def scenes_of(rows, at):
 
 
 def objects_text(scenes):
-    """The number of objects behind each panel."""
+    """Returns a text with the number of objects in each panel."""
     return "n: " + listed(
         f"{scene.base} ({counted(scene.sums.with_nearest.max(), 'object', 'objects')}"
         f"{f', {scene.seeds} seeds' if scene.seeds > 1 else ''})" for scene in scenes)
@@ -64,7 +64,7 @@ def objects_text(scenes):
 # ---- promises
 
 def broken_text(row):
-    """How a row broke its promise; "" if it did not."""
+    """Returns how a row broke its promise; "" if the row kept it."""
     wrong, missed, pairs = (number(row, name) for name in ("wrong", "missed", "missed_pairs"))
     if not row.sets:
         return f"{of_all(wrong, number(row, 'asked'))} distances are not the nearest double" if wrong else ""
@@ -134,7 +134,7 @@ def size_figure(scenes):
         f"below what holds all nearest neighbours. {objects_text(scenes)}.")
     for scene in scenes:
         series = [scene.series(method, "triangles_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
-        if series:  # boxes and trees have no cells, so they are the same at each resolution
+        if series:  # boxes and trees have no cells, so their counts do not depend on the resolution
             x, levels = series[0].x, [(method, scene.value(method, 0, "triangles_each")) for method in (BOXES, TREES)]
             series += [Series(method, x, [y] * len(x), "lines") for method, y in levels if y == y]
             out.panels.append(Panel(scene.base, log(CELLS), log("triangles per object", zero=True), series))

@@ -2,13 +2,13 @@
 the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
 from frame import *  # noqa: F403
 
-CLOSE = 0.96  # the second panel shows CLOSE to 2 - CLOSE
+CLOSE = 0.96  # the second panel shows factors from CLOSE to 2 - CLOSE
 SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
 
 
 def with_axes(rows):
-    """Rows with `factor`, the radius over the budget radius (NaN if a row of a published radius lacks one of them), and
-    with `surface`, the canvas or depth that the radius was tested with."""
+    """Returns the rows with more columns: `factor`, radius / budget radius (NaN if a row of the published radius lacks one
+    of these numbers); `surface`, the canvas or depth with which the radius was tested."""
     at = ["scene", "method", "depth_mode", "resolution"]
     radius = rows.assign(px=column(rows, "radius_px"))
     budgets = radius[radius.radius == "budget"].drop_duplicates(at).set_index(at).px
@@ -22,7 +22,7 @@ def with_axes(rows):
 
 
 def shares(rows, by, part, whole):
-    """For each value of the columns `by` the share of two sums, in per cent."""
+    """Returns sum of `part` / sum of `whole`, in per cent, for each value of the columns `by`."""
     sums = rows.assign(part=column(rows, part), whole=column(rows, whole)).groupby(by)[["part", "whole"]].sum()
     return 100 * sums.part / sums.whole
 
@@ -34,7 +34,7 @@ def series(name, values, style="lines_points", **look):
 # ---- the lemmas
 
 def panel_of(title, label):
-    """A share in per cent against the factor."""
+    """Returns an empty panel for a share in per cent against the factor."""
     return Panel(title, Axis("radius / budget radius", low=0, high=1.1), log(label, zero=True, high=100),
                  marks=[Mark(1, "budget radius")])
 
@@ -80,7 +80,7 @@ def lemma_table(lemmas):
                 "from which on none is, of every generator; those that violate nothing at either radius are one row",
                 columns(["depth", "generator"], ["points", "published", "budget", "least factor",
                                                  "published: farthest outside (px)"]))
-    clean = {}  # of each surface, the points and least factors of generators without a violation
+    clean = {}  # for each surface: points and least factors of the generators without a violation
     for (surface, generator), rows in groups(lemmas, ["surface", "generator"]):
         published, others = rows[rows.published], rows[~rows.published]
         budget, bad = others[others.factor == 1], others.factor[column(others, "violations") > 0].max()
@@ -128,8 +128,8 @@ def add_lemmas(chapter, lemmas):
 # ---- placements
 
 def with_placements(rows):
-    """Rows with their placements: the scene of the patches, the contact, the side in px, and the subpixel bits to which
-    corners are snapped (0: not snapped)."""
+    """Returns the rows with more columns: patches, the scene that they come from; contact; side, in px; bits, the subpixel
+    bits to which corners are snapped (0: not snapped)."""
     words = [re.fullmatch(r"(.*)@(\w+):([^:]*):.*", scene).groups() for scene in rows.scene]
     return rows.assign(patches=[w[0] for w in words], contact=[w[1] for w in words], side=[float(w[2]) for w in words],
                        bits=[int(m.removeprefix("far-snapped-")) if m.startswith("far-snapped-") else 0
@@ -145,8 +145,8 @@ def rate_of_rows(rows):
 
 
 def add_headline(chapter, runs, placements):
-    """Adds how often the published radius misses something in scenes that were not constructed for it, and that it
-    fails end to end only in those that were. Comes first, since the rest is about constructed points."""
+    """Adds how often the published radius misses pairs in scenes that were not constructed against it, and how often in
+    scenes that were. Comes first, since the rest is about constructed points."""
     published = runs[runs.published & (runs.depth_mode == "fragment")]
     constructed = published[published.scene == "pixel-corners"]
     natural = published[published.scene != "pixel-corners"]
@@ -173,7 +173,7 @@ def add_headline(chapter, runs, placements):
     if said:
         chapter.find("Of patches placed into each other at random, the published radius missed something in "
                      f"{listed(said)}.")
-    # Gives a rate of 0 a meaning: the misses of smaller radii in the same placements.
+    # A rate of 0 means little unless smaller radii miss something in the same placements.
     words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
              for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
     if words:
@@ -181,8 +181,8 @@ def add_headline(chapter, runs, placements):
 
 
 def placement_figure(placements):
-    """The rate of placements with a miss against the radius, by the size of triangles, with its interval. Corners are
-    snapped to as many bits as in most placements."""
+    """Draws the rate of placements with a miss against the radius, with its interval, for each size of triangles. Shows
+    placements with one number of subpixel bits: the most frequent number."""
     bits = max(groups(placements, "bits"), key=lambda of: total(of[1], "placements"))[0]
     rows = placements[(placements.bits == bits) & np.isfinite(placements.factor)]
     panel = panel_of("", "placements with a miss (%)")
@@ -211,7 +211,7 @@ def placement_table(placements):
     for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):
         out.rows.append([
             radius, rounded(side), str(bits) if bits else "not snapped", str(resolution), grouped(total(rows, "placements")),
-            rate_of_rows(rows).replace(", 95 % interval ", "; ").replace("95 % bound: ", ""),  # words of the caption
+            rate_of_rows(rows).replace(", 95 % interval ", "; ").replace("95 % bound: ", ""),
             of_rows(rows, "missed", "colliding"),
             rounded(column(rows, "largest_miss_px").max()) if total(rows, "missed") else "-"])
     return out
@@ -220,9 +220,9 @@ def placement_table(placements):
 # ---- pairs
 
 def add_pairs(chapter, pairs):
-    """Adds the estimated rates of pairs that were drawn from strata: the probability of the stratum times the share with a
-    miss. The probability is a sum over three views. It counts a placement twice if it is in the strata of two views, so the
-    estimate is too large by a factor of at most 1 + 2 corner_px."""
+    """Adds the estimated rates of pairs that were drawn from strata. A rate is the probability of the stratum times the share
+    of placements with a miss. The probability is a sum over three views, so a placement in the strata of two views counts
+    twice. The estimate is therefore too large by a factor of at most 1 + 2 corner_px."""
     out = Table("radius-pairs", "Estimated rate of placements of two single triangles in which FAR misses them: the "
                 "probability of the stratum from which they are drawn, times the share with a miss, with its 95 % interval, or "
                 "the 95 % bound. Misses of smaller radii are in other placements too",

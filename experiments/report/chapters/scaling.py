@@ -3,7 +3,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 
 METHODS = ["FAR (OBB)", "Boxes", "CULLIDE", "I-COLLIDE", "exact"]
 CROWD, DENSE = "crowd:[^:]*", "crowd:[^:]*:[^:]*"  # patterns of scenes
-# Each plot by the name of its size: title, axis, its scenes, the column of the size.
+# For each plot: title, label of the axis, pattern of its scenes, column of the size.
 PLOTS = {"objects": ("objects: crowd:N", "objects", CROWD, "objects"),
          "triangles": ("triangles: torii:N", "triangles", "torii:.*", "triangles"),
          "resolution": ("resolution: two-spheres", "resolution (px)", "two-spheres", "resolution"),
@@ -12,7 +12,8 @@ PLOTS = {"objects": ("objects: crowd:N", "objects", CROWD, "objects"),
 
 
 def rows_of(rows, plot):
-    """The rows of a plot, ascending in its size, the column `at`. Methods without a resolution are not in its plot."""
+    """Returns the rows of a plot, sorted by the size in the column `at`. The plot over the resolution leaves out methods
+    without a resolution."""
     _, _, scenes, size = PLOTS[plot]
     rows = rows[rows.scene.str.fullmatch(scenes)]
     if size == "density":

@@ -5,8 +5,8 @@ MESHES, SIMULATED, DRAWN, CONSTRUCTED = "scanned or modelled", "simulated", "dra
 
 
 def with_sources(rows, scenes):
-    """The rows with the column source, and `seed` for drawn ones: from @seed, or that of the scene. scenes: the entry of
-    the program for each scene, by its name without numbers and suffixes."""
+    """Returns the rows with the columns source and seed. Drawn scenes have a seed: that of @seed, or the scene's own. scenes:
+    the program's entry for each scene, by the name without numbers and suffixes."""
     def source_of(row):
         known = scenes.get(re.split("[:@]", row.scene)[0], {})
         if known.get("needs_meshes"):

@@ -8,12 +8,12 @@ FAMILIES = {"slivers": ("slivers", "aspect"), "mixed": ("mixed sizes", "ratio of
             "offset": ("far from the origin", "offset (px)"), "scale": ("scaled", "scale")}
 STRICT = {"CULLIDE, one round, all views, conservative": "CULLIDE, strict"}
 CLOTH_SELF, CLOTH_APART = "cloth against itself and a sphere", "cloth on a sphere"
-LEAST_CULLED = 30  # per cent of the triangles; a family with less tests little
+LEAST_CULLED = 30  # per cent of the triangles; a family where less is culled tests little
 WHY_LITTLE = {CLOTH_SELF: "nearly every triangle of a cloth touches neighbours, which are left to exact tests"}
 
 
 def extreme_of(row):
-    """The family of a scene, the quantity that it takes to an extreme, and its value."""
+    """Returns the family of a scene, the name of the number that goes to an extreme, and the number."""
     words = row.scene.split("@")[0].split(":")
     if words[0] == "contacts":
         return *FAMILIES.get(words[1], (words[1], "")), float(words[3])
@@ -22,8 +22,8 @@ def extreme_of(row):
 
 
 def tracks_of(rows):
-    """Triples of a family with its axis, a method, and its rows by value of the family's number, in the order of the grid:
-    from the harmless value to the extreme. A cloth has several frames at one value."""
+    """Returns triples: a family with its axis; a method; the method's rows by the value of the family's number. Values are in
+    the order of the grid, from the harmless value to the extreme one. A cloth has several frames at one value."""
     if rows.empty:
         return []
     extremes = [extreme_of(row) for row in rows.itertuples()]
@@ -40,18 +40,19 @@ def families_of(tracks):
 
 
 def excess(rows):
-    """Kept over colliding triangles; NaN if the rows lack one of the two."""
+    """Returns kept triangles / colliding triangles; NaN if the rows lack one of these counts."""
     colliding = total(rows, "colliding_triangles")
     return total(rows, "kept_triangles") / colliding if colliding and column(rows, "kept_triangles").notna().any() else NONE
 
 
 def number_text(x):
-    """1e12 and 1e-9, as in the names of scenes."""
+    """Returns a text such as 1e12 or 1e-9, as in the names of scenes."""
     return f"{x:g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
 
 
 def missed_share(rows):
-    """Per cent of the colliding pairs that are missed: in cells, of those whose contact varies."""
+    """Returns the missed per cent of the colliding pairs. If the rows count pairs whose contact varies, only these pairs
+    are used."""
     varies = column(rows, "varying").notna().any()
     return share(*(total(rows, name) for name in (("missed_varying", "varying") if varies else ("missed", "colliding"))))
 
@@ -84,7 +85,7 @@ def figure_of(tracks):
 
 
 def risks_of(rows, track):
-    """The pairs at risk of the rows of a track, with 0.9 of the radius and without a ball; NaN: not counted."""
+    """Returns how many pairs of a track are at risk with 0.9 of the radius, and how many without a ball; NaN: not known."""
     known = [at_risk(rows, row) for row in track.itertuples()]
     return [NONE if all(x != x for x in values) else sum(x for x in values if x == x) for values in zip(*known)]
 
@@ -115,7 +116,7 @@ def table_of(rows, tracks):
 
 
 def add_failures(chapter, rows):
-    """Adds what methods that promise nothing miss, and what a library reports wrongly."""
+    """Adds which pairs methods that promise nothing miss or report wrongly."""
     for method, of in by(rows[~rows.index.isin(promising(rows).index) & (rows.method != "exact")], "contestant"):
         wrong = total(of, "wrong")
         more = f", and reported {counted(wrong, 'pair', 'pairs')} that do not collide" if wrong else ""
@@ -135,7 +136,7 @@ def add_rises(chapter, tracks):
 
 
 def add_power(chapter, rows, tracks, names):
-    """Adds where methods that promise culled too little, or nothing was at risk, so that 0 missed says little."""
+    """Adds where 0 missed pairs say little: a method that promises culled too little, or no pair was at risk."""
     for family, methods in families_of(tracks):
         little, safe = [], []
         for method, places in methods:

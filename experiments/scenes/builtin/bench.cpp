@@ -15,13 +15,13 @@ using namespace shapes;
 namespace {
 
 constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
-constexpr double kSpacing = 1.8;           // distance of neighbouring cells; each has one blob
+constexpr double kSpacing = 1.8;           // side of a cell; each cell has one blob
 constexpr double kJitter = 0.3;            // largest shift of a blob in its cell, along each axis
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Makes the blobs of a field one after the other: as many, at least one, as come nearest to the
-// wanted number of triangles.
+// Makes the blobs of a field one after the other. Their number brings the triangles nearest to the
+// wanted number; it is at least 1.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -56,14 +56,14 @@ class Blobs {
   Random random_;
   std::vector<Mesh> shapes_;
   std::uint64_t count_, next_ = 0;
-  std::uint64_t cells_ = 1;  // cells along each axis of the cube that the blobs fill from below
+  std::uint64_t cells_ = 1;  // cells along each axis of the cube that the blobs fill
 };
 
 constexpr double kLength = 4700;  // length of a needle
 constexpr double kWidth = 0.002;
 constexpr double kBending = 1e-4;  // largest angle of a needle with Frame::along, radians
 constexpr double kSpan = 24000;    // extent of a layer across its needles
-constexpr double kShear = 1;       // shift of a needle along itself per distance across
+constexpr double kShear = 1;       // shift of a needle along itself / its place across
 constexpr double kGap = 1;         // distance of the two layers
 
 // An orthonormal frame whose first axis is the direction of needles.
@@ -77,7 +77,6 @@ Frame frame_of(const Vec3& direction) {
   return {along, across, along.cross(across)};
 }
 
-// A needle about the origin.
 Corners hair(const Frame& frame, Random& random) {
   const Vec3 along = (frame.along + kBending * random.in_ball()).normalized();
   const Vec3 aside = across(along, kWidth, random);
@@ -86,15 +85,15 @@ Corners hair(const Frame& frame, Random& random) {
   return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
 }
 
-// A random place in the layer of an object; a layer is a quarter of the gap thick.
+// Returns a random place in the layer of an object. A layer's thickness is a quarter of the gap.
 Vec3 in_layer(const Frame& frame, int object, Random& random) {
   const double across = random.between(-kSpan / 2, kSpan / 2);
   const double height = kGap * (object + random.between(-0.125, 0.125));
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// Two layers. The needles of each take the frames in turn. Every eighth needle of the second layer
-// is moved so that it crosses a needle of the first.
+// Makes two layers. Needle i of a layer has frame i modulo the number of frames. Every eighth
+// needle of the second layer is moved so that it crosses a needle of the first layer.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -127,7 +126,7 @@ BuiltScene make_field(const SceneParameters& parameters, std::uint64_t seed) {
   return {std::move(scene), motion};
 }
 
-// A random unit vector perpendicular to another one.
+// Returns a random unit vector perpendicular to `along`.
 Vec3 across(const Vec3& along, Random& random) {
   for (;;) {
     const Vec3 out = along.cross(random.direction());
@@ -135,7 +134,8 @@ Vec3 across(const Vec3& along, Random& random) {
   }
 }
 
-// A triangle with a longest side of 1 and a height over it of 1 / aspect, in a random direction.
+// Returns a triangle in a random direction. Its longest side is 1, the height over this side is
+// 1 / aspect.
 Corners sliver(double aspect, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 start = -0.5 * along;
@@ -143,7 +143,6 @@ Corners sliver(double aspect, Random& random) {
           start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
 }
 
-// An equilateral triangle about the origin, in a random direction.
 Corners equilateral(double side, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 other = across(along, random);
@@ -199,7 +198,8 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three slivers in four cross that of the first object; the fourth is off by twice its height.
+    // Three of four slivers cross a sliver of the first object. The fourth is moved off such a
+    // sliver by twice its own height.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -215,8 +215,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> large, little;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
-    // Each large triangle gets eight small ones. Every other one crosses it, and the rest are two
-    // small sides away from it.
+    // Each large triangle gets eight small triangles. Four of them cross the large triangle. The
+    // other four are two small sides away from it.
     for (int k = 0; k < 8; ++k) {
       Vec3 at = inner_point(large.back(), random);
       if (k % 2 == 1) at += 2 * small * normal_of(large.back());
@@ -226,8 +226,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// The sheets have the slope z = x/4 + y/8. Their heights and tilts are multiples of gap / 8, and
-// the gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
+// The sheets have the slope z = x/4 + y/8. Heights and tilts are multiples of gap / 8, and the gap
+// is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
   constexpr std::uint32_t kCells = 8;  // cells along a side of a sheet
@@ -247,8 +247,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1), where the ulp is 2^-53, so every number is
-// exact.
+// All coordinates are multiples of 2^-53 in [1/2, 1). There the ulp is 2^-53, so they are exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -259,9 +258,9 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // A point of the cell: u and v count eighths of the cell along two axes, and `rise` quarters
-    // along the third axis. Without the slope u / 32 + v / 64 a view along an axis would see some
-    // triangles edge-on, and they would have no image.
+    // Returns a point of the cell. u and v count eighths of the cell along two axes, `rise` counts
+    // quarters along the third axis. Without the slope u / 32 + v / 64, some triangles would be
+    // edge-on in a view along an axis, and would have no image.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;
@@ -273,7 +272,7 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     if (i / 3 % 2 == 0) {  // a vertex over a face
       lower.push_back({at(1, 1, 0, 0), at(7, 1, 0, 0), at(1, 7, 0, 0)});
       upper.push_back({at(3, 3, 0, gap), at(6, 1, 1, gap), at(1, 6, 1, gap)});
-    } else {  // an edge over an edge, across it
+    } else {  // an edge crosses over an edge
       lower.push_back({at(1, 4, 0, 0), at(7, 4, 0, 0), at(4, 4, -1, 0)});
       upper.push_back({at(4, 1, 0, gap), at(4, 7, 0, gap), at(4, 4, 1, gap)});
     }

@@ -14,7 +14,7 @@ using namespace shapes;
 namespace {
 
 // The control points of a uniform cubic B-spline over the unit square. Point i * side + j belongs
-// to the parameter ((i - 1) / spans, (j - 1) / spans).
+// to the parameters u = (i - 1) / spans, v = (j - 1) / spans.
 struct Lattice {
   explicit Lattice(std::uint32_t spans) : spans(spans), side(spans + 3), points(side * side) {}
   std::uint32_t spans;
@@ -56,10 +56,10 @@ void keep_distance(Vec3& a, Vec3& b, double least, double most) {
   b -= step;
 }
 
-// Moves neighbours in the lattice to their distance in the flat sheet, by position based dynamics
-// (Müller et al. 2007). A least distance of points that are two apart limits bending.
+// Gives neighbours in the lattice the distance that they have in the flat sheet, by position based
+// dynamics (Müller et al. 2007). Keeps points i and i + 2 of a row apart, which limits bending.
 void relax(Lattice& sheet, int rounds) {
-  constexpr double kBend = 1.5;  // least distance of points that are two apart, in units of h
+  constexpr double kBend = 1.5;  // least distance of points i and i + 2 of a row, in units of h
   const double h = 1.0 / sheet.spans;
   const double across = h * std::sqrt(2.0);
   const std::uint32_t n = sheet.side;
@@ -83,7 +83,8 @@ void relax(Lattice& sheet, int rounds) {
   }
 }
 
-// A random smooth map of the unit square into a ball, relaxed until it hardly stretches the sheet.
+// Makes a random smooth map of the unit square into a ball. Relaxes it until it hardly stretches
+// the sheet.
 Lattice crumple(Random& random) {
   constexpr std::uint32_t kFolds = 10;  // spans of the random map: more spans make smaller folds
   constexpr std::uint32_t kSpans = 84;  // spans of the sheet that is relaxed
@@ -107,7 +108,7 @@ struct Ball {
   double radius;
 };
 
-// Pairs of balls whose centres are nearer than the sum of their radii plus a margin.
+// Returns the pairs of balls whose centres are nearer than the sum of the radii plus the margin.
 std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& balls,
                                                      double margin) {
   const double cell = 2 + margin;  // a radius is at most 1
@@ -139,9 +140,9 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
   return out;
 }
 
-// Balls of radius 0.5 to 1, settled in a box without a lid. Their meshes lie inside the balls. So
-// that the meshes touch, balls in contact are nearer than the sum of their radii, by the fraction
-// kDeep.
+// Returns balls of radius 0.5 to 1, which settled in a box without a lid. The mesh of a ball lies
+// inside the ball. So that meshes touch, balls in contact are nearer than the sum of their radii,
+// by the fraction kDeep.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;
@@ -175,8 +176,8 @@ std::vector<Ball> heap(std::uint64_t count, Random& random) {
   return balls;
 }
 
-// The part with a bore, cut in two, is triangulated as CAD tessellators do: flat faces with a round
-// hole are fans of slivers, and walls are quads of the part's full length, split in two.
+// The part with a bore, cut in two. It is triangulated as CAD programs do it: flat faces with a
+// round hole are fans of slivers; walls are quads of the part's full length, split in two.
 
 // Vertices around a face, counterclockwise seen from outside the part.
 using Loop = std::vector<std::uint32_t>;
@@ -208,7 +209,6 @@ class Part {
     add(corners[0], corners[1], corners[2]);
     add(corners[0], corners[2], corners[3]);
   }
-  // A wall between loops of equally many vertices.
   void wall(const Loop& from, const Loop& to) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const std::size_t next = (i + 1) % from.size();
@@ -216,8 +216,8 @@ class Part {
     }
   }
   // Fills the region between a loop and a round hole in it. Each side of the hole is joined to the
-  // corner of the loop that is nearest in angle. Precondition: the hole's middle sees all of the
-  // loop.
+  // corner of the loop that is nearest in angle. Precondition: segments from the hole's middle to
+  // the loop cross no other side of the loop.
   void holed(const Loop& outer, const Loop& hole) {
     Vec3 middle = Vec3::Zero();
     for (const std::uint32_t v : hole) middle += at(v) / static_cast<double>(hole.size());
@@ -243,7 +243,6 @@ class Part {
       }
     }
   }
-  // The mesh, rotated so that its axes become x, y and z.
   Mesh placed(const Vec3& x, const Vec3& y, const Vec3& z) && {
     for (Vec3& p : vertices_) p = Vec3(p.x() * x + p.y() * y + p.z() * z);
     return finished(std::move(vertices_), std::move(triangles_));
@@ -270,8 +269,8 @@ struct Slope {
   Vec3 over(double x, double y) const { return {x, y, height + along_x * x + along_y * y}; }
 };
 
-// A block over a square of side 1, between two planes, with a bore from one to the other. Each face
-// is a fan of slivers around its end of the bore.
+// Returns a block over a square of side 1, between the planes `below` and `above`, with a bore
+// through both planes. The face in a plane is a fan of slivers around the end of the bore.
 Part bored_block(const Bore& bore, const Slope& below, const Slope& above) {
   const auto rim = [&](Part& part, const Slope& face) {
     return part.circle({face.over(bore.middle.x(), bore.middle.y()),
@@ -328,8 +327,8 @@ BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed) {
   return {builder.finish(), {}};
 }
 
-// The upper half is tilted a little about the middle of the cut, so that the halves meet on one
-// side of the cut and have a gap on the other.
+// The upper half is tilted a little about the middle of the cut. So the halves meet on one side of
+// the cut, and have a gap on the other side.
 BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kLength = 3;    // length of either half
   constexpr double kTilt = 0.012;  // radians
@@ -345,7 +344,7 @@ BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed) {
   const Vec3 x = across(z, 1, random);
   const Vec3 y = z.cross(x);
   const Mesh lower = bored_block(bore, {-kLength, 0, 0}, cut).placed(x, y, z);
-  // Tilts about the diagonal x + y; the angle is so small that it can replace its tangent.
+  // Tilts the upper half about the diagonal x + y. The angle is so small that its tangent is kTilt.
   const Vec3 tilted = (z + kTilt * (x - y) / std::sqrt(2.0)).normalized();
   const Vec3 along = (x - x.dot(tilted) * tilted).normalized();
   Mesh upper = bored_block(bore, cut, {kLength, 0, 0}).placed(along, tilted.cross(along), tilted);

@@ -12,7 +12,7 @@ using namespace shapes;
 
 namespace {
 
-// The number of cells along a side of a grid with about this many triangles.
+// Returns the number of cells along a side of a grid with about this many triangles.
 std::uint32_t cells_for(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
 }
@@ -27,19 +27,19 @@ constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in
 constexpr std::uint32_t kPleats = 14;
 
 // The cloth at one distance from its middle. Seen from above, its pleats are a sine-generated
-// curve: the direction swings by +-`swing` radians, so that the curve is as long as the cloth, but
-// advances only as far as the mean radius allows.
+// curve: the direction swings by +-`swing` radians. So the curve is as long as the flat cloth at
+// this distance, but goes around a circle of the smaller mean radius.
 struct Ring {
-  double radius = 0, height = 0;             // means
+  double radius = 0, height = 0;             // mean values
   std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of length 1
 };
 
 constexpr std::uint32_t kSteps = 64;  // steps of a pleat in Ring::pleat
 constexpr std::uint32_t kRings = 600;
-constexpr double kReachOfCloth = 1.5;  // radius of the last ring; corners of the square: sqrt(2)
+constexpr double kReachOfCloth = 1.5;  // distance of the last ring from the middle; above sqrt(2)
 
-// The mean of cos(swing sin(u)) over u. It is the Bessel function J0, and falls from 1 to 0 if the
-// swing goes from 0 to 2.4.
+// Returns the mean of cos(swing sin(u)) over u: the Bessel function J0(swing). It falls from 1 to 0
+// while the swing grows from 0 to 2.4.
 double advance(double swing) {
   double sum = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) sum += std::cos(swing * std::sin(kTurn * k / kSteps));
@@ -85,7 +85,8 @@ std::vector<Ring> rings() {
   return out;
 }
 
-// The place of a point of the cloth, by its distance and angle (in turns) in the flat square.
+// Returns the place of a point of the hung cloth. In the flat square, the point has the distance s
+// from the middle and the angle `turns`, in turns.
 Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
   const double row = s / kReachOfCloth * kRings;
   const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);
@@ -110,13 +111,12 @@ Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven)
   return {out * std::cos(angle), out * std::sin(angle), height};
 }
 
-// The quads of a funnel.
 struct FunnelGrid {
   std::uint32_t around = 96, pipe_rings = 8, cone_rings = 12;
   std::uint64_t triangles() const { return 2ull * around * (pipe_rings + cone_rings); }
 };
 
-// A surface of revolution around all of the points, and `gap` away from the nearest point.
+// Returns a surface of revolution around all points, `gap` away from the nearest point.
 Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid& quads) {
   const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
   const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);
@@ -126,14 +126,13 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid
     pipe = std::max(pipe, r - slope * std::max(0.0, p.z() - begin));
     top = std::max(top, p.z());
   }
-  // The sides of the polygon are nearer to the axis than its corners.
+  // The rings are polygons, whose sides are nearer to the axis than their corners.
   const double widen = 1 / std::cos(kTurn / 2 / quads.around);
   std::vector<std::array<double, 2>> profile;  // radius, height
   for (std::uint32_t k = 0; k <= quads.pipe_rings; ++k)
     profile.push_back({pipe + gap, begin * (0.2 + 0.8 * k / quads.pipe_rings)});
   for (std::uint32_t k = 1; k <= quads.cone_rings; ++k) {
     const double z = (top - begin) * k / (quads.cone_rings - quads.cone_rings / 12.0);
-    // The last ring lies above the cloth.
     profile.push_back({pipe + gap + slope * z, begin + z});
   }
   std::vector<Vec3> vertices;

@@ -17,7 +17,7 @@ Mesh tetrahedron() {
                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
 }
 
-// A triangle of length 1 and the given width, its long axis in any direction.
+// Returns a triangle of length 1 and the given width. Its long axis has a random direction.
 Corners needle(Random& random, double width) {
   const Vec3 along = random.direction();
   const Vec3 aside = across(along, width, random);
@@ -34,8 +34,8 @@ Scene make_two_spheres() {
 }
 
 Scene make_two_tori() {
-  // Moved by 1.5, the second ring passes within 0.5 of the first: they are linked, and their tubes
-  // of radius 0.35 cross.
+  // The second ring is moved by 1.5, and passes the first ring at a distance of 0.5. So the rings
+  // are linked, and the tubes around them, of radius 0.35, cross.
   const Mesh mesh = torus(1, 0.35, 100, 50);
   return two_objects("two-tori", "first", mesh, "second", mesh,
                      {.scale = {},
@@ -62,20 +62,21 @@ constexpr std::uint64_t kAxial = kGolden;  // seed ^ kAxial is the seed of slive
 
 Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
 
-// A sliver along axis k, with its width along the next axis.
+// Returns a sliver along axis k, with its width along axis k + 1.
 Corners axial_needle(std::uint32_t k, double width, Random& random) {
   const Vec3 start = -0.5 * axis(k);
   return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
 }
 
-// The second object turns against the first; each sliver of the fourth slides along its long axis.
+// Moves two of the four objects: the second object turns; each sliver of the fourth object slides
+// along its long axis.
 Motion turning_and_sliding(const Scene& scene) {
   return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
                                                           FrameNotes&) {
     const double swing = std::sin(2 * std::numbers::pi * now.time);
     const Eigen::AngleAxisd turn(0.2 * swing, Vec3(1, 1, 1).normalized());
     const Eigen::Matrix3d matrix = turn.toRotationMatrix();
-    const auto corners = [&](const Object& object) {  // a soup has three for each triangle
+    const auto corners = [&](const Object& object) {  // each triangle has three vertices of its own
       return std::pair(3 * object.first_triangle,
                        3 * (object.first_triangle + object.triangle_count));
     };
@@ -89,8 +90,8 @@ Motion turning_and_sliding(const Scene& scene) {
   };
 }
 
-// size: slivers in each of the two oblique objects; a larger scene begins with the same slivers,
-// bit for bit. Each of the two objects along the axes has three eighths as many.
+// size: number of slivers in each of the two oblique objects. These slivers are the first ones of
+// any larger scene, bit for bit. Each of the two objects along the axes has 3/8 as many slivers.
 BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
@@ -98,8 +99,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
-    // One of four slivers has a random place, two cross a sliver of the first object, and one is
-    // moved off a sliver of the first object by twice the smaller width.
+    // Of four slivers, one has a random place. Two cross a sliver of the first object. One is moved
+    // off a sliver of the first object by twice the smaller width.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -111,8 +112,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Two objects along the axes: each sliver of the one crosses a sliver of the other. Each lies
-  // along x, y or z; all nine combinations occur in turn.
+  // Two objects along the axes. Each sliver lies along x, y or z, and crosses a sliver of the other
+  // object. All nine combinations of two axes occur in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;
@@ -139,7 +140,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
 Scene make_degenerate() {
   constexpr double kHair = 0x1p-40;
   const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  // Each pair touches or crosses as the comment says. Most coordinates are whole numbers.
+  // The comment of each pair says how the triangles meet. Most coordinates are whole numbers.
   const std::vector<std::pair<Corners, Corners>> cases = {
       {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
       {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge
@@ -169,8 +170,9 @@ Scene make_degenerate() {
       {face, {Vec3(1, 1, -2), Vec3(1, 1, 2), Vec3(1 + kHair, 1, 2)}},  // sliver through face
       {face, {Vec3(1, 1, 0), Vec3(1, 3, 4), Vec3(1 + kHair, 3, 4)}},   // sliver, vertex on face
   };
-  // Each case appears three times in a grid of cells: as it is, and with the second triangle higher
-  // and lower by kHair, 2^-40. This is far above an ulp, so every coordinate is exact.
+  // Each case appears three times in a grid of cells: as it is, with the second triangle higher by
+  // kHair, and with this triangle lower by kHair. kHair is far above an ulp, so every coordinate is
+  // exact.
   std::vector<Corners> first;
   std::vector<Corners> second;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -188,8 +190,8 @@ Scene make_ground(std::uint64_t seed) {
   Random random(seed);
   SceneBuilder scene("ground", "ground");
   for (int i = 0; i < 5; ++i) {
-    // The centre lies about one radius above the ground, so that some blobs are sunk into it and
-    // others touch nothing.
+    // The centre lies about one radius above the ground. So some blobs are sunk into the ground,
+    // and others touch nothing.
     const Vec3 at(1.6 * i - 3.2, random.between(-1, 1), random.between(0.7, 1.5));
     const Mesh mesh = blob(3, random);
     scene.add(mesh, "blob" + std::to_string(i), Split::kNone, random.anywhere(at));
@@ -202,9 +204,8 @@ Scene make_ground(std::uint64_t seed) {
 
 constexpr double kUsualCrowdDensity = 400.0 / (12 * 12 * 12);
 
-// size: objects; second: objects per unit of volume.
+// size: number of objects; second: objects per unit of volume.
 BuiltScene make_crowd(const SceneParameters& parameters, std::uint64_t seed) {
-  // With the usual numbers the factor is exactly 1.
   const double half = 6 * std::cbrt(static_cast<double>(parameters.size) / 400 *
                                     (kUsualCrowdDensity / parameters.second));
   Random random(seed);

@@ -1,7 +1,7 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks. Two are scenes of the papers with a
-// dragon, whose triangles are divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha,
-// VRST 2004), or it breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
-// Hardware 2003).
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Two scenes are from papers, and
+// have a dragon with divided triangles. A bunny falls through the dragon (FAR: Govindaraju, Lin and
+// Manocha, VRST 2004), or the dragon breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and
+// Manocha, Graphics Hardware 2003).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdlib>
@@ -36,7 +36,8 @@ constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
 
-// A placement that gives the second mesh the diagonal of the first, and the centre of its box.
+// Returns a placement for the second mesh. Its box gets the diagonal and the centre of the box of
+// the first mesh.
 Placement onto(const Mesh& first, const Mesh& second) {
   const double scale = diagonal(bounds(first)) / diagonal(bounds(second));
   return {.scale = Vec3(Vec3::Constant(scale)),
@@ -67,8 +68,8 @@ Scene make_dragon_bunny() {
   return two_objects("dragon-bunny", "dragon", dragon, "bunny", bunny, onto(dragon, bunny));
 }
 
-// A mesh and its copy, moved by `diagonals` diagonals along (2, 3, 6). That vector has length 7 and
-// is parallel to no axis.
+// Returns a mesh and a copy of it. The copy is moved by `diagonals` diagonals along (2, 3, 6). This
+// vector has length 7 and is parallel to no axis.
 Scene with_copy(const std::string& name, const char* file, const char* first, const char* second,
                 double diagonals) {
   const Mesh mesh = packaged(file);
@@ -93,8 +94,8 @@ struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;
   Vec3 middle;      // middle of its box
-  double late = 0;  // the time when it comes off
-  Vec3 way;         // velocity, without that of falling
+  double late = 0;  // the time when the piece comes off
+  Vec3 way;         // velocity, without the speed of falling
   Vec3 axis;        // axis of its rotation
   double turn = 0;  // radians per unit of time
 };
@@ -103,11 +104,10 @@ struct Breaking {
   std::string name;
   Mesh dragon;
   std::vector<std::uint32_t> piece_of;  // the piece of each triangle
-  std::vector<Piece> pieces;  // first the piece that comes off first; the last piece stays
-  double height = 0;          // height of the dragon
+  std::vector<Piece> pieces;            // in the order in which they come off; the last piece stays
+  double height = 0;                    // height of the dragon
 };
 
-// The piece of all triangles for which `takes` is true.
 template <class Takes>
 Piece part_of(const Mesh& mesh, const Takes& takes) {
   PartMaker maker(mesh.vertices);
@@ -122,8 +122,8 @@ Piece part_of(const Mesh& mesh, const Takes& takes) {
 }
 
 // Breaks the dragon up. The centres of kPieces random triangles are the seeds of the pieces. Each
-// triangle belongs to the piece with the nearest seed. The dragon is hit at its highest point;
-// pieces come off in the order of the distances of their seeds from it.
+// triangle belongs to the piece with the nearest seed. The dragon is hit at its highest point. A
+// piece whose seed is nearer to this point comes off earlier.
 std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   shapes::Random random(seed);
   auto out = std::make_shared<Breaking>();
@@ -169,8 +169,8 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   return out;
 }
 
-// Makes the scene after the first `off` pieces have come off: the rest of the dragon, then these
-// pieces, at rest.
+// Makes the scene after the first `off` pieces have come off. The objects are the rest of the
+// dragon, then these pieces, where they were in the dragon.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();
@@ -187,7 +187,7 @@ void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
 void break_at(const Breaking& dragon, double time, Scene& scene) {
   std::size_t off = 0;  // the last piece stays
   while (off + 1 < kPieces && dragon.pieces[off].late <= time) ++off;
-  // If the number of objects is right, so are the triangles.
+  // The number of objects determines the triangles.
   if (scene.objects.size() != off + 1) set_topology(dragon, off, scene);
   std::size_t v = scene.vertices.size();
   for (std::size_t s = 0; s < off; ++s) v -= dragon.pieces[s].part.vertices.size();
@@ -203,7 +203,6 @@ void break_at(const Breaking& dragon, double time, Scene& scene) {
   }
 }
 
-// size: triangles of the dragon.
 BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
   const Mesh dragon = refined(packaged(kDragon), parameters.size);
   const Mesh bunny = packaged(kBunny);
@@ -217,8 +216,8 @@ BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
   const std::vector<Vec3> rest(built.scene.vertices.begin() + static_cast<std::ptrdiff_t>(first),
                                built.scene.vertices.end());
   const Box small = bounds(bunny);
-  const double way =
-      place.hi.y() - place.lo.y() + scale * (small.hi.y() - small.lo.y());  // the whole way down
+  const double way = place.hi.y() - place.lo.y() +
+                     scale * (small.hi.y() - small.lo.y());  // length of the bunny's way down
   built.motion = [rest, first, way, from = Vec3(scale * centre(small)), to = centre(place)](
                      const Instant& now, Scene& out, FrameNotes&) {
     const Eigen::Matrix3d turned =

@@ -1,7 +1,7 @@
-// Scenes that move. Most are generated versions of scenes of the papers, with their shapes, counts
-// and motions: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha,
-// Graphics Hardware 2003), falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha,
-// VRST 2004).
+// Scenes that move. Most have the shapes, counts and motions of scenes in papers, but are
+// generated: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
+// Hardware 2003); falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST
+// 2004).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,14 @@ using namespace shapes;
 
 namespace {
 
-// The path of an object through a box and back, from time 0 to 1.
+// The closed path of an object in a box, from time 0 to time 1.
 struct Way {
   Vec3 centre;
   Vec3 reach;  // largest distance from the centre along each axis
   Vec3 phase;  // phases of the motion along the axes, in turns
-  Vec3 axis;   // axis of its rotation
+  Vec3 axis;   // axis of the object's rotation
   double turns = 1;
-  double swell = 0;  // phase of its deformation, in turns
+  double swell = 0;  // phase of the object's deformation, in turns
 
   Vec3 at(double time) const {
     Vec3 p = centre;
@@ -45,8 +45,8 @@ Way draw_way(double room, double reach, Random& random) {
   return way;
 }
 
-// A scene of objects of one shape, each of which moves along its own Way. `deformed` gives a vertex
-// of the shape at a time, in the object's own frame.
+// Makes a scene of objects of one shape. Each object moves along its own Way. `deformed` returns
+// the place of a vertex of the shape at a time, in the coordinates of the object.
 template <class Deformed>
 BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
                          std::vector<Way> ways, Deformed deformed) {
@@ -66,8 +66,8 @@ BuiltScene on_their_ways(const std::string& name, const std::string& object, con
   return halfway(std::move(built));
 }
 
-// An open tube of radius 1 about the z axis from z = 0 to 1, of along x around cells of two
-// triangles. Vertex i * around + j is at height i / along.
+// Returns an open tube of radius 1 about the z axis, from z = 0 to 1. It has `along` x `around`
+// cells of two triangles. Vertex i * around + j is at height i / along.
 Mesh tube(std::uint32_t around, std::uint32_t along) {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -88,8 +88,8 @@ Mesh tube(std::uint32_t around, std::uint32_t along) {
   return finished(std::move(vertices), std::move(triangles));
 }
 
-// The numbers of steps along and around a torus with about this many triangles. Prefers numbers
-// that give exactly as many.
+// Returns the numbers of steps along and around a torus with about this many triangles. Prefers
+// steps that give exactly this many triangles.
 std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
   const std::uint64_t cells = triangles / 2;
   const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
@@ -151,7 +151,7 @@ Mesh make_tree(Random& random) {
   return finished(std::move(tree.vertices), std::move(tree.triangles));
 }
 
-// A leaf of 10 by 10 cells, 0.24 long, arched and with a blunt tip and stem.
+// Returns a leaf of 10 by 10 cells. It is 0.24 long and arched, with a blunt tip and stem.
 Mesh make_leaf() {
   Mesh leaf = grid(10);
   for (Vec3& p : leaf.vertices) {
@@ -166,13 +166,12 @@ Mesh make_leaf() {
 struct Leaf {
   Vec3 from;
   double late = 0;   // the time when the leaf comes off
-  double sway = 0;   // largest way to the side
+  double sway = 0;   // largest move to the side
   double phase = 0;  // phase of the sway, in turns
-  Vec3 axis;         // axis of its rotation
-  double turns = 0;  // turns per unit of time, while it falls
+  Vec3 axis;         // axis of the leaf's rotation
+  double turns = 0;  // turns per unit of time while the leaf falls
 };
 
-// size: cylinders.
 BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kRoom = 2.5;  // half the side of the room for 100 cylinders of length 1
   const double room = kRoom * std::cbrt(static_cast<double>(parameters.size) / 100);
@@ -190,7 +189,7 @@ BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed)
                        });
 }
 
-// size: triangles of a torus, as close as a grid allows.
+// size: wanted number of triangles of a torus; a grid may give a few more or less.
 BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Way> ways;
@@ -207,7 +206,6 @@ BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
       });
 }
 
-// size: leaves.
 BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr double kFall = 4;  // fall of a leaf per unit of time
   Random random(seed);
@@ -250,13 +248,14 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
 // each other for a depth buffer of 24 bits ----
 
 constexpr std::uint32_t kCells = 18;  // cells along a side; the side is 1 long
-constexpr double kGrain = 0x1p-40;    // heights are multiples of it
+constexpr double kGrain = 0x1p-40;    // heights are multiples of kGrain
 
 std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; }
 
-// A square of 18 by 18 cells of two triangles, with two flaps of 12 by 1 cells. A flap is joined to
-// the grid line i = 6 or i = 12, so that three triangles meet at its edges, and lies over the next
-// row of cells. The flaps' vertices come after those of the grid; make_shells() raises them.
+// Returns a square of 18 by 18 cells of two triangles, with two flaps of 12 by 1 cells. The flaps
+// are joined to the grid lines i = 6 and i = 12, so that three triangles meet at the edges there. A
+// flap lies over the next row of cells. Vertices of flaps come last; make_shells() raises these
+// vertices.
 Mesh sheet() {
   auto [vertices, triangles, source_face, group, group_names, folded, notes] = grid(kCells);
   for (const std::uint32_t line : {6u, 12u}) {
@@ -276,10 +275,9 @@ Mesh sheet() {
 
 double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
 
-// size: sheets. All heights are multiples of 2^-40 below 2^10, so that sums with the gap, 2^-34,
-// are exact. So a sheet of the stack is an exact copy of the one below it, moved up, and never
-// meets it. The flaps rise by half a gap over cells with the same corners, and do not meet the
-// sheet above.
+// size: number of sheets. All heights are multiples of 2^-40 below 2^10, so sums with the gap,
+// 2^-34, are exact. A sheet of the stack is an exact copy of the sheet below, moved up by the gap,
+// so the two sheets never meet. A flap rises by half a gap, so it does not meet the sheet above.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();
@@ -308,7 +306,8 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
         if (s < stacked) {
           lift += static_cast<double>(s) * kShellGap;
         } else {
-          // The sheet rises from below the stack to above it, in a direction that turns with time.
+          // The sheet is tilted: one side lies below the stack, the other side above the stack. The
+          // direction of the tilt turns with time.
           const double turn = kTurn * (now.time + phases[s]);
           const double across =
               0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);
@@ -337,7 +336,7 @@ FrameNotes notes_of(const ClothReport& report) {
           .warning = report.warning};
 }
 
-// size: triangles of the cloth, as close as a square grid allows; second: stiffness, N/m.
+// size: wanted number of triangles, which a square grid meets closely; second: stiffness, N/m.
 BuiltScene make_cloth(const SceneParameters& parameters) {
   ClothSettings settings;
   settings.triangles = parameters.size;

@@ -10,8 +10,8 @@
 
 namespace farcull {
 
-/// The numbers that a name may carry after colons, as in crowd:3000:0.2. An omitted number has its
-/// usual value, or 0 if the scene takes no such number.
+/// The numbers in the name of a scene, as in crowd:3000:0.2. If a number is left out, it has its
+/// usual value; if the scene takes no such number, it is 0.
 struct SceneParameters {
   std::uint64_t size = 0;
   double second = 0;
@@ -20,21 +20,21 @@ struct SceneParameters {
 
 /// The range of the first number, as in field:1000000.
 struct SceneSize {
-  std::string what;  // the thing that it counts, such as "triangles"
+  std::string what;  // what the number counts, such as "triangles"
   std::uint64_t least = 0;
   std::uint64_t most = 0;
   std::uint64_t usual = 0;  // used if the name has no number
 };
 
-/// The range of the second number, both ends included.
+/// The range of the second number, with both ends.
 struct SceneSecond {
-  std::string what;  // the thing that it measures, with its unit, such as "stiffness in N/m"
+  std::string what;  // what the number measures, such as "stiffness in N/m"
   double least = 0;
   double most = 0;
   double usual = 0;
 };
 
-/// A moment of a motion: a simulation reads `frame`, a path `time`.
+/// A moment of a motion. A simulation uses `frame`. A motion along a path uses `time`.
 struct Instant {
   long frame = 0;
   double time = 0;  // 0 to 1
@@ -43,17 +43,17 @@ struct Instant {
 /// The numbers and the warning that a motion gives for a frame.
 struct FrameNotes {
   std::vector<std::pair<std::string, double>> values;  // the same names in every frame
-  std::string warning;                                 // empty: none
+  std::string warning;                                 // empty: no warning
 };
 
-/// Moves the scene to an instant. The scene is the built one or the result of an earlier call. If
-/// its triangles and objects stay, only Scene::vertices is written, in place. The result does not
-/// depend on earlier calls; an earlier frame of a simulation is computed from frame 0 on. Throws
-/// Error if the scene cannot be computed.
+/// Moves the scene to an instant. The scene is BuiltScene::scene or the result of an earlier call.
+/// If triangles and objects do not change, only Scene::vertices is written, in place. The result
+/// does not depend on earlier calls; a simulation that goes back computes all frames from 0 on.
+/// Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {
-  Scene scene;    // "without frames": used if no frames are asked for
+  Scene scene;    // the scene without frames: used if the user names no frames
   Motion motion;  // empty: nothing moves
 };
 
@@ -65,7 +65,7 @@ struct BuiltinScene {
   std::string motion = {};                 // one line; empty if nothing moves
   std::optional<SceneSize> size = {};      // empty: the scene has one size only
   std::optional<SceneSecond> second = {};  // empty: no second number
-  bool costly = false;            // the usual size is meant for farcull bench, not for every test
+  bool costly = false;            // at its usual size too large for every test; for farcull bench
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random
@@ -76,9 +76,9 @@ struct BuiltinScene {
   Scene make() const { return build(usual()).scene; }
 };
 
-/// The change of a scene by a suffix: every vertex is multiplied by `scale` and moved by
-/// `translate`, in double. Then, if `ground` is given, an object "ground" of two triangles with
-/// these corners is added.
+/// The change of a scene by a suffix. Every vertex is multiplied by `scale` and moved by
+/// `translate`, in double. If `ground` is set, an object "ground" is then added: two triangles with
+/// these corners.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
@@ -87,14 +87,13 @@ struct SceneChange {
 /// Throws Error naming the scene if a coordinate is not finite afterwards.
 void apply(const SceneChange& change, Scene& scene);
 
-/// apply() with these two numbers.
 Scene transformed(Scene scene, double scale, const Vec3& translate);
 
 /// A suffix that any built-in scene takes, as in two-spheres@far; several apply from left to right.
 struct SceneSuffix {
   std::string suffix;       // begins with @
   std::string description;  // one line
-  /// The change, which is the same for all frames, from the scene without frames.
+  /// Returns the change for the scene without frames. All frames have the same change.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();
@@ -102,8 +101,8 @@ const std::vector<SceneSuffix>& scene_suffixes();
 /// All built-in scenes, generated ones first. The list is made once.
 const std::vector<BuiltinScene>& builtin_scenes();
 
-// The parts of the list. Those of the papers move; without frames they are halfway through their
-// motion, except the cloth.
+// The parts of builtin_scenes(). The paper_scenes() move. Without frames they are halfway through
+// their motion; only the cloth is not.
 std::vector<BuiltinScene> generated_scenes();
 std::vector<BuiltinScene> bench_scenes();
 std::vector<BuiltinScene> contact_scenes();
@@ -111,10 +110,11 @@ std::vector<BuiltinScene> paper_scenes();
 std::vector<BuiltinScene> extreme_scenes();
 std::vector<BuiltinScene> packaged_scenes();
 
-/// The scene of this name, which is read up to its first ':' or '@'; null if there is none.
+/// Returns the scene of this name; null if there is no such scene. Only the part of the name before
+/// the first ':' or '@' is used.
 const BuiltinScene* find_builtin_scene(const std::string& name);
 bool is_builtin_scene(const std::string& name);
-/// A remedy: "did you mean two-spheres? " if the name is similar to that of a built-in scene; else
+/// Returns a remedy: "did you mean two-spheres? " if a built-in scene has a similar name; otherwise
 /// "correct the name; ".
 std::string likely_name(const std::string& name);
 
@@ -129,15 +129,15 @@ struct SceneRequest {
 /// of range, or not taken by the scene.
 SceneRequest parse_scene_name(const std::string& name);
 
-/// A built-in scene by name. Throws Error as parse_scene_name(), if the packaged meshes it needs
-/// are not there, and if suffixes move it beyond what a double can hold.
+/// Returns a built-in scene. Throws Error as parse_scene_name() does, if packaged meshes are
+/// missing that the scene needs, and if suffixes move a vertex beyond the largest double.
 Scene make_builtin_scene(const std::string& name);
 
-/// The seed of the built-in scene of this name: that of @seedN, or its own. Empty if nothing in the
-/// scene is random, and for any other name.
+/// Returns the seed of a built-in scene: N of @seedN, or the scene's own seed. Empty if nothing in
+/// the scene is random, or if no built-in scene has this name.
 std::optional<std::uint64_t> builtin_seed(const std::string& name);
 
-/// True if this is the name of a built-in scene that moves, with or without numbers and suffixes.
+/// True if a built-in scene of this name moves. The name may have numbers and suffixes.
 bool has_motion(const std::string& name);
 
 std::string moving_names();
@@ -149,7 +149,7 @@ class MovingScene {
   /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself. Throws Error
   /// as make_builtin_scene(), and if nothing moves.
   explicit MovingScene(const std::string& name, long frames, bool self = false);
-  /// The same for a scene that is not built in. Precondition: it has a motion.
+  /// Makes frames of a scene that is not built in. Precondition: the scene has a motion.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
   /// The scene at a frame of the range, validated. Returns the same Scene object each time. Its
@@ -157,7 +157,8 @@ class MovingScene {
   /// the previous call. The ground of a suffix does not move. Throws Error as Motion does.
   const Scene& at(long frame);
 
-  /// The notes of the motion on the last frame from at(), such as energies; most motions have none.
+  /// Returns the motion's notes on the last frame from at(), such as energies. Most motions have no
+  /// notes.
   const std::vector<std::pair<std::string, double>>& notes() const { return notes_.values; }
   const std::string& warning() const { return notes_.warning; }
 
@@ -167,35 +168,35 @@ class MovingScene {
   Motion motion_;
   std::vector<SceneChange> changes_;
   Scene plain_;    // the scene without the changes of suffixes
-  Scene changed_;  // the scene with these changes, if there are any
+  Scene changed_;  // the scene with the changes of suffixes, if there are any
   FrameNotes notes_;
 };
 
 inline constexpr const char* kBunny = "bunny00.off";
 inline constexpr const char* kDragon = "ChineseDragon-10kv.off";
 
-/// The folder of the packaged meshes: that of the environment variable FARCULL_MESHES, or, if it is
-/// empty, the one given when farcull was built.
+/// Returns the folder of the packaged meshes: the value of the environment variable FARCULL_MESHES;
+/// if that is empty, the folder that was given when farcull was built.
 std::string mesh_folder();
 
 /// Reads a file of mesh_folder(). Throws Error if that fails.
 Mesh packaged(const char* file);
 
 /// Calls take() with the parts of the scene "field" one after the other, so that memory does not
-/// grow with the scene. A part is some consecutive whole objects, as a scene called `name`, which
-/// take() may change. Together the parts are the scene, bit for bit.
+/// grow with the scene. A part is a scene with the given name and some consecutive objects; take()
+/// may change it. Together the parts are the scene, bit for bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
 /// The distance between neighbouring sheets in the stack of the scene "shells".
 inline constexpr double kShellGap = 0x1p-34;
 
-/// The scenes of these names; extreme_scenes() and contact_scenes() say what their numbers mean.
-/// Every fourth sheet of the stack crosses its neighbours. The pairs of `gap` collide if the second
-/// number, rounded to a whole number of ulps, is 0 or less.
+/// Make the scenes slivers, stack, mixed, gap and so on. extreme_scenes() and contact_scenes() say
+/// what the numbers mean. Every fourth sheet of the stack crosses its neighbours. The pairs of
+/// `gap` collide if the second number, rounded to a whole number of ulps, is 0 or less.
 BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_stack(const SceneParameters& parameters);
-/// The power of two nearest to the wanted gap of the stack, so that no height is rounded.
+/// Returns the power of two nearest to the wanted gap of the stack, so that no height is rounded.
 double stack_gap(double wanted);
 BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_gap(const SceneParameters& parameters);
@@ -204,14 +205,14 @@ BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 
-/// A scene of two objects, the second one placed.
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement = {});
-/// The scene in the middle of its motion.
+/// Returns the scene, moved to the middle of its motion.
 BuiltScene halfway(BuiltScene built);
 
-/// Makes a scene. Converts a function that takes nothing or the seed and returns a Scene, or that
-/// takes the parameters, perhaps also the seed, and returns a BuiltScene.
+/// Makes a scene. Can be constructed from a function of nothing or of the seed, which returns a
+/// Scene; or from a function of the parameters, or of parameters and seed, which returns a
+/// BuiltScene.
 struct SceneMaker {
   template <class Make>
   SceneMaker(Make function) {
@@ -228,12 +229,12 @@ struct SceneMaker {
   }
   std::function<BuiltScene(const SceneParameters&, std::uint64_t)> make;
 };
-/// The scene that `make` returns, with the motion that `motion` makes from it.
+/// Returns a maker of the scene that `make` returns, with the motion that `motion` makes from it.
 SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&));
 
 inline constexpr bool kCostly = true, kChanges = true;
-/// A row of the table of scenes, with the members of BuiltinScene. seed: used if the name gives
-/// none; 0 if nothing in the scene is random.
+/// Returns a row of the table of scenes, with the members of BuiltinScene. seed: used if the name
+/// gives no seed; 0 if nothing in the scene is random.
 BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
                    const char* description, std::uint32_t objects, std::uint32_t triangles,
                    const char* motion = "", const SceneSize& size = {},

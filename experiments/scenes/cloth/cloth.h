@@ -1,6 +1,6 @@
 // A square cloth that falls on a fixed sphere: springs along the edges, bending across them,
-// contact with friction. The cloth has no contact with itself, so its folds pass through each
-// other, and the scene has intersecting triangles within one moving object.
+// contact with friction. The cloth has no contact with itself: its folds pass through each other,
+// so triangles of one moving object intersect.
 //
 // The end of a step is the minimum of a strictly convex function. So a step has one solution at
 // every stiffness, and the total energy grows in a step by at most ClothReport::slack, up to
@@ -23,8 +23,8 @@ struct ClothSettings {
   double stiffness = 1e4;           // stiffness of the spring along an edge, N/m; > 0
   double side = 1;                  // side of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
-  double buckling_load = 1;         // N/m; >= 0: an edge of length l buckles at a thrust of this
-                                    // times l
+  double buckling_load = 1;         // N/m; >= 0: edges of length l buckle at the thrust
+                                    // buckling_load * l, N
   double bending_rigidity = 2e-5;   // N m; >= 0
   double gravity = 9.81;            // acceleration along -z, m/s^2; >= 0
   double drag = 0.1;                // force of the air per area and speed, N s/m^3; >= 0
@@ -32,12 +32,12 @@ struct ClothSettings {
                          // and the object "sphere" has no triangles
   double contact_modulus = 1e6;  // pressure per depth below the sphere's surface, N/m^3; > 0
   double friction = 0.3;         // Coulomb's coefficient between cloth and sphere; >= 0
-  double stick_speed = 0.01;     // below it friction falls linearly to 0, m/s; > 0
+  double stick_speed = 0.01;     // below this speed friction falls to 0, m/s; > 0
   double height = 0.02;          // height of the cloth above the sphere at the start, m; >= 0
   double time_step = 0.01;       // s; > 0
   double tolerance = 1e-3;       // largest residual, as a fraction of the weight of the heaviest
                                  // vertex (at 9.81 m/s^2); > 0
-  int max_iterations = 400;      // factorizations in a step, at most; >= 0
+  int max_iterations = 400;      // at most this many factorizations in a step; >= 0
   std::uint64_t seed = 1;        // seed of the random heights that break the symmetry at the start
 };
 
@@ -47,17 +47,16 @@ namespace cloth {
 
 inline constexpr double kStandardGravity = 9.81;  // m/s^2, for weights as units of force
 
-/// A spring along an edge. At length l its force is stiffness * (l - length), but not less than
-/// -buckling_load * l, since a shorter spring buckles. smooth_force() is a smooth form of this
-/// force.
+/// A spring along an edge. At length l its force is the larger of stiffness * (l - length) and
+/// -buckling_load * l, since a short spring buckles. smooth_force() is a smooth form of this force.
 struct Spring {
   std::array<std::uint32_t, 2> vertices;
   double length = 0;  // length at rest, m
 };
 
 /// A spring of rest length 0 across an edge. It connects a point of the edge with a point of the
-/// segment between the opposite corners; at rest these points coincide. The vector between them is
-/// w = the sum of weight * vertex, where the weights sum to 0. The energy is stiffness / 2 * |w|^2.
+/// segment between the opposite corners. At rest the two points coincide. The vector between the
+/// points is w = sum of weight * vertex; the weights sum to 0. The energy is stiffness / 2 * |w|^2.
 struct Hinge {
   std::array<std::uint32_t, 4> vertices;
   std::array<double, 4> weights;
@@ -68,9 +67,9 @@ struct Model {
   ClothSettings settings;
   std::uint32_t cells = 0;  // cells along a side
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<double> area;  // of each vertex, m^2: a third of its triangles
-  std::vector<double> mass;  // of each vertex, kg
-  double crimp = 0;          // J, of smooth_force() for all springs and contacts
+  std::vector<double> area;  // for each vertex a third of the area of its triangles, m^2
+  std::vector<double> mass;  // for each vertex, kg
+  double crimp = 0;          // the parameter of smooth_force() for springs and contacts, J
   std::vector<Spring> springs;
   std::vector<Hinge> hinges;
   Eigen::VectorXd rest;  // the initial positions, m
@@ -79,7 +78,7 @@ struct Model {
 /// Throws Error naming "cloth" if a setting is out of range.
 Model make_model(const ClothSettings& settings);
 
-/// In J.
+/// Energies of the cloth, J.
 struct Energies {
   double kinetic = 0;
   double elastic = 0;  // energy of stretched and compressed springs
@@ -92,8 +91,8 @@ struct Energies {
 };
 Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity);
 
-/// A step from x0 with velocity v0. Its end minimizes the strictly convex function F of the new
-/// positions (docs/cloth.md, "A step").
+/// A step from x0 with velocity v0. The new positions minimize a strictly convex function F
+/// (docs/cloth.md, "A step").
 struct Step {
   const Model& model;
   Eigen::VectorXd x0;
@@ -102,47 +101,48 @@ struct Step {
   std::vector<double> friction;  // coefficient times contact force at x0, N
   double stretch = 0;            // stiffness + buckling_load, N/m
 };
-/// Precondition: sizes are those of the model. The model must outlive the step.
+/// Preconditions: x0 and v0 have 3 numbers for each vertex; the model outlives the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
 
-/// The gradient of F at x, N. Resizes `result`.
+/// Writes the gradient of F at x, N, to `result`, and resizes it.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
-/// The force (N) of a spring of stiffness c that is stretched by e: the f > 0 with f (f/c - e) =
-/// crimp. It is nearly c e if e is far above 0, and nearly 0 if e is far below 0.
+/// Returns the force (N) of a spring of stiffness c that is stretched by e: the f > 0 with
+/// f (f/c - e) = crimp. f is nearly c e if e is far above 0, and nearly 0 if e is far below 0.
 double smooth_force(double c, double crimp, double e);
-/// The derivative of smooth_force() by e, and the energy whose derivative smooth_force() is.
+/// Return the derivative of smooth_force() by e; the integral of smooth_force() over e.
 double smooth_stiffness(double c, double crimp, double e);
 double smooth_energy(double c, double crimp, double e);
 
-/// The length at which the convex spring begins to pull, m (docs/cloth.md, l*).
+/// Returns the length at which the convex spring begins to pull, m (docs/cloth.md, l*).
 double slack_length(const Model& model, std::size_t spring);
-/// Stiffness of the sphere's surface at a vertex, N/m.
+/// Returns the stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
-/// The gradient without the smooth forces of springs and contact.
+/// Writes gradient() without the smooth forces of springs and contact.
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
-/// Calls add() with the blocks that do not depend on x: inertia, air and bending. A pair may come
-/// several times, in either order. The block of a vertex with itself is given in full.
+/// Calls add() with the blocks that do not depend on x: inertia, air and bending. A pair of
+/// vertices may come several times, in any order. The block of a vertex with itself comes in full.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// The second derivatives of a spring's energy by the position of either end. The derivatives by
-/// both ends are the negative of this block. Positive semidefinite.
+/// Returns the second derivatives of a spring's energy by the position of one end, the same for
+/// each end. The mixed derivatives are the negative of this block. Positive semidefinite.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
-/// Contributions of contact and of friction to the block of a vertex. Positive semidefinite.
+/// Return what contact and friction add to the block of a vertex. Positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 
-/// A point of the cone t >= |d|, or of its dual, which is the same cone.
+/// A point of the cone t >= |d|. The dual cone is the same cone.
 struct ConePoint {
   double t = 0;
   Vec3 d = Vec3::Zero();
 };
 double determinant(const ConePoint& u);
-/// The largest a with u + a du in the cone; infinite if there is none. Precondition: u is inside.
+/// Returns the largest a with u + a du in the cone; infinite if a has no bound. Precondition: u is
+/// inside the cone.
 double reach(const ConePoint& u, const ConePoint& du);
 
 struct Minimum {
@@ -155,19 +155,20 @@ struct Minimum {
 };
 
 /// Keeps the pattern of the model's matrix between steps, and whether the last step needed interior
-/// points. The model must outlive it.
+/// points. The model must outlive the Solver.
 class Solver {
  public:
   explicit Solver(const Model& model);
 
-  /// Minimizes from x0 by Newton's method with a search along each direction; if that gets stuck,
-  /// by interior points, then by Newton's method from their result.
+  /// Minimizes from x0 by Newton's method with a search along each direction. If this method gets
+  /// stuck, minimizes by interior points, and then by Newton's method from the result.
   Minimum minimize(const Step& step);
 
-  /// Largest residual at which a step has converged, N: the setting plus the effect of rounding x.
+  /// Returns the largest residual at which a step has converged, N: the setting `tolerance`, plus
+  /// the effect of rounding x.
   double tolerance(const Eigen::VectorXd& x) const;
 
-  /// The Hessian at x: the lower triangle.
+  /// Returns the lower triangle of the Hessian at x.
   const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
 
  private:
@@ -192,16 +193,16 @@ class Solver {
 
 /// The outcome of a step, and the energies after it.
 struct ClothReport : cloth::Energies {
-  long frame = 0;            // number of steps so far, this one included; 0: before the first
+  long frame = 0;            // number of steps so far, with this step; 0: before the first
   double residual = 0;       // largest force on a vertex that the step left unbalanced, N
-  double slack = 0;          // work of the unbalanced forces in the step, J: the most that the
-                             // total energy may have gained
+  double slack = 0;          // work of the unbalanced forces in the step, J: the total energy
+                             // grew by at most this work
   int iterations = 0;        // factorizations
-  bool converged = true;     // residual <= its tolerance
-  std::string warning = {};  // why it did not converge, and what was kept instead; else empty
+  bool converged = true;     // residual <= Solver::tolerance()
+  std::string warning = {};  // why the step did not converge, and what was kept; else empty
 };
 
-/// The state between two steps, and the report of the last one.
+/// The state between two steps, and the report of the last step.
 struct ClothState {
   ClothReport report = {};
   Eigen::VectorXd positions, velocities;  // m and m/s, three numbers for each vertex of the cloth
@@ -215,22 +216,21 @@ class Cloth {
   Cloth(Cloth&&) noexcept;
   Cloth& operator=(Cloth&&) noexcept;
 
-  /// Two objects, "cloth" (self) and "sphere", in this order. The vertices of the cloth come first,
-  /// (m + 1)^2 of them row by row. The scene always satisfies validate(). It stays the same object:
-  /// step() moves its vertices.
+  /// Returns a scene of two objects: "cloth" (self), then "sphere". The first (m + 1)^2 vertices
+  /// are the cloth's, row by row. The scene always satisfies validate(). step() moves the vertices
+  /// of the same Scene object.
   const Scene& scene() const;
 
-  /// One time step. A step that does not converge leaves every vertex where it was, at speed 0. The
-  /// kinetic energy is lost, and none is gained; the report says so.
+  /// Makes one time step. If a step does not converge, every vertex stays where it was, at speed 0.
+  /// The kinetic energy is then lost; the report says so.
   ClothReport step();
 
-  /// The energies now. frame, residual, iterations and so on are those of the last step.
   const ClothReport& report() const;
 
   ClothState state() const;
   /// Takes the state, and recomputes the energies of its report. If velocities are not finite, the
-  /// next step does not converge. Throws std::logic_error if there are not three positions and
-  /// velocities for each vertex.
+  /// next step does not converge. Throws std::logic_error unless positions and velocities have
+  /// three numbers for each vertex.
   void restore(const ClothState& state);
 
  private:

@@ -12,8 +12,8 @@
 namespace farcull::cloth {
 namespace {
 
-// Model::crimp divided by the weight of a cell and the side of the cell. An edge that is slack by
-// 1e-4 of its length then pulls with 1e-4 of the cell's weight.
+// Model::crimp / (weight of a cell * side of a cell). So an edge that is slack by 1e-4 of its
+// length pulls with 1e-4 of the cell's weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {
@@ -68,9 +68,8 @@ void add_triangles(Model& model) {
   }
 }
 
-// Places the cloth flat above the sphere, a little off its centre. The heights are random, far
-// below the size of a cell: they decide where the cloth folds, which rounding would decide
-// otherwise.
+// Places the cloth flat above the sphere, a little off its centre. Adds small random heights, far
+// below the size of a cell. They decide where the cloth folds; otherwise rounding would decide it.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -88,8 +87,9 @@ void place(Model& model) {
 }
 
 // Adds the hinge of edge a-b; c and d are the opposite corners of its two triangles. The weights
-// give the point where the line through c and d meets the edge: the middle of a diagonal of a cell,
-// one end of any other edge, where the triangles mirror each other.
+// give the point where the line through c and d meets the edge. If the edge is a diagonal of a
+// cell, this is its middle. Otherwise the triangles mirror each other, and it is an end of the
+// edge.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
@@ -105,7 +105,6 @@ void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, 
 }
 
 void add_springs_and_hinges(Model& model) {
-  // For each edge, the corner opposite to it in its first triangle.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
   const std::uint32_t side = model.cells + 1;
   const double cell = model.settings.side / model.cells;
@@ -124,7 +123,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// The energy of the convex spring minus the energy of the thrust, T l^2 / 2. It is 0 at rest.
+// Returns the energy of the convex spring minus the energy of the thrust, T l^2 / 2; 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;
@@ -151,7 +150,7 @@ double smooth_stiffness(double c, double crimp, double e) {
 
 double smooth_energy(double c, double crimp, double e) {
   const double root = std::sqrt(e * e + 4 * crimp / c);
-  // e^2 + e root, without cancellation below 0.
+  // sum = e^2 + e root, computed without cancellation for e < 0.
   const double sum = e < 0 ? 4 * crimp / c * e / (root - e) : e * (e + root);
   return 0.25 * c * sum + crimp * std::asinh(0.5 * e * std::sqrt(c / crimp));
 }

@@ -18,8 +18,8 @@ double determinant(const ConePoint& u) {
 }
 
 double reach(const ConePoint& u, const ConePoint& du) {
-  // The least a > 0 at which t, or the determinant of u + a du, is 0. This determinant is c + 2 b a
-  // + q a^2 with c > 0.
+  // Finds the least a > 0 at which t or the determinant of u + a du is 0. The determinant is
+  // c + 2 b a + q a^2 with c > 0.
   const double q = determinant(du);
   const double b = u.t * du.t - u.d.dot(du.d);
   const double c = determinant(u);
@@ -40,21 +40,21 @@ namespace {
 constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
 constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
 
-// The unknowns of the interior points: for each spring a point u of the cone and its dual z, and
-// for each contact a distance s and a force f. The complementarity of a spring is u.z, that of a
-// contact is s f, J; both are about Model::crimp at the minimum.
+// The unknowns of the interior points. A spring has a point u of the cone and its dual z; its
+// complementarity is u.z, J. A contact has a distance s and a force f; its complementarity is s f,
+// J. At the minimum each complementarity is about Model::crimp.
 class Interior {
  public:
-  // Starts inside the cones at the positions x, where each complementarity has the given value. The
+  // Starts inside the cones at the positions x; each complementarity has the given value, J. The
   // step must outlive this object.
   Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
 
   // The mean of the complementarities, J.
   double complementarity() const;
 
-  // Sets up the equations of the next direction, which aims at complementarity `target`. Then the
-  // next four functions give the blocks and forces that springs and contacts add to the equations
-  // of the positions; the unknowns of springs and contacts are eliminated.
+  // Sets up the equations of the next direction, which aims at complementarity `target`. Eliminates
+  // the unknowns of springs and contacts. The next four functions return the blocks and forces that
+  // springs and contacts add to the equations of the positions.
   void linearize(const Eigen::VectorXd& x, double target);
   const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
   const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
@@ -207,15 +207,15 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
   return way;
 }
 
-constexpr int kTrials = 60;  // lengths tried in one direction; a double allows no more halvings
+constexpr int kTrials = 60;  // at most this many lengths are tried in one direction, by halving
 // The constants below change the time of a step, not its result.
-constexpr int kMostIterations = 40;  // Newton's iterations before interior points take over
+constexpr int kMostIterations = 40;  // with more iterations of Newton, interior points take over
 constexpr double kShort = 0.125;     // a step below this fraction of Newton's counts as short
-constexpr int kMostShort = 3;        // short steps before interior points take over
+constexpr int kMostShort = 3;        // after this many short steps, interior points take over
 constexpr double kStart = 1;         // initial complementarity / (weight * length)
 constexpr double kEnd = 2;           // final complementarity / crimp: Newton's method is then quick
 
-// The lower triangle of the matrix, filled with the values that do not depend on x.
+// Returns the lower triangle of the matrix, with the values that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
@@ -308,7 +308,7 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
   return s.tolerance * kStandardGravity * heaviest + rounding;
 }
 
-// Solves with the assembled matrix; false if it has no Cholesky factor.
+// Solves with the assembled matrix. Returns false if the matrix has no Cholesky factor.
 bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   factor_.factorize(matrix_);
   if (factor_.info() != Eigen::Success) return false;
@@ -318,8 +318,8 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
 
 // Each iteration searches along Newton's direction until |slope| is at most a tenth of its initial
 // value. The function is convex, so the slope begins below 0 and rises. Stops after `iterations`
-// iterations or `most_short` short steps. Returns false if a force is not finite, the matrix has no
-// Cholesky factor, or the setting max_iterations is used up.
+// iterations or `most_short` short steps. Returns false if a force is not finite, if the matrix has
+// no Cholesky factor, or if max_iterations is used up.
 bool Solver::newton(const Step& step, int iterations, int most_short, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());
@@ -377,7 +377,7 @@ void Solver::interior(const Step& step, Minimum& best) {
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // wanted ratio of the next complementarity to this one
+  double aim = 0.1;  // wanted: next complementarity / present complementarity
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;
@@ -422,7 +422,7 @@ Minimum Solver::minimize(const Step& step) {
 namespace farcull {
 namespace {
 
-// The level of the finest shapes::sphere() that has at most half as many triangles.
+// Returns the level of the finest shapes::sphere() with at most triangles / 2 triangles.
 int sphere_level(std::uint64_t triangles) {
   int level = 0;
   while (20 * (std::uint64_t{4} << (2 * level)) <= triangles / 2) ++level;

@@ -19,7 +19,7 @@
 namespace farcull {
 namespace {
 
-// Formats that are not read, and the advice to their users.
+// Formats that are not read, with advice to the user.
 struct Foreign {
   const char* remedy;
   std::string_view extensions;
@@ -43,7 +43,6 @@ bool is_compressed(const std::string& path) {
   return lower_case(std::filesystem::path(path).extension().string()) == ".gz";
 }
 
-// The name of the file without its folder and without .gz.
 std::filesystem::path plain_name(const std::string& path) {
   const std::filesystem::path name(path);
   return is_compressed(path) ? name.stem() : name.filename();
@@ -53,8 +52,8 @@ std::string extension_of(const std::string& path) {
   return lower_case(plain_name(path).extension().string());
 }
 
-// Larger files are refused. A file is read as a whole, so that the counts in it can be compared
-// with its length.
+// Larger files are refused, since a file is read at once. The counts in a file are compared with
+// its length.
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 struct Reader {
@@ -83,7 +82,7 @@ struct Place {
   int digits = 1;
 };
 
-// The first place for a number in a name, and whether it is the only one.
+// Returns the first place for a number in a name, and whether it is the only place.
 std::pair<Place, bool> place_in(const std::string& name) {
   Place found;
   int count = 0;
@@ -104,8 +103,8 @@ std::pair<Place, bool> place_in(const std::string& name) {
   return {found, count == 1};
 }
 
-// The absolute path without links; `path` itself if there is no such file. Calls the C library,
-// since std::filesystem needs memory for several paths at once, and a path of a file may be long.
+// Returns the absolute path without links; `path` itself if there is no such file. Calls the C
+// library, since std::filesystem needs memory for several paths at once, and a path may be long.
 std::string real_path(const std::string& path) {
   const std::unique_ptr<char, void (*)(void*)> file(::realpath(path.c_str(), nullptr), &std::free);
   return file ? file.get() : path;
@@ -193,7 +192,7 @@ Mesh load_mesh(const std::string& path) {
 }
 
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name) {
-  // The header of a binary STL file may begin with any bytes, those of gzip included.
+  // The header of a binary STL file may begin with any bytes, even with the mark of gzip.
   const bool compressed = is_gzip(bytes) && !(format == MeshFormat::kStl && is_binary_stl(bytes));
   if (!compressed) return parse_known(bytes, format, name);
   return parse_known(gunzip(bytes, name, {.max_bytes = kMaxMeshBytes}), format, name);

@@ -21,8 +21,8 @@ struct Mesh {
   std::vector<Vec3> vertices;                           // finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices
   std::vector<std::uint32_t> source_face;               // the face of each triangle, from 0
-  std::vector<std::uint32_t> group;                     // of each triangle: place in group_names
-  std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
+  std::vector<std::uint32_t> group;        // for each triangle, an index into group_names
+  std::vector<std::string> group_names;    // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded = {};  // faces that are Triangulation::folded, ascending
   std::vector<std::string> notes = {};     // sentences on what the reader passed over
 };
@@ -35,14 +35,15 @@ struct MeshPart {
 
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
-/// The format that the extension of a path names, in upper or lower case; ".gz" after it is passed
-/// over. Throws Error naming the path for any other extension: foreign_mesh(path), if that exists.
+/// Returns the format that the extension of a path names, in upper or lower case. A final ".gz" is
+/// passed over. Throws Error naming the path, if possible foreign_mesh(path), for other extensions.
 MeshFormat mesh_format(const std::string& path);
-/// The format of "obj", "off", "ply" or "stl". Throws Error naming --format.
+/// Returns the format of "obj", "off", "ply" or "stl". Throws Error naming --format for other
+/// names.
 MeshFormat named_format(const std::string& name);
 bool has_mesh_extension(const std::string& path);
-/// The Error for a path with the extension of a known format that is not read, compressed or not.
-/// The Error says what converts the file. Empty for other extensions.
+/// Returns an Error if the path has the extension of a known format that is not read, compressed or
+/// not. The Error says what converts the file. Empty for other extensions.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// Sentences on what load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that
@@ -68,12 +69,12 @@ Mesh load_mesh(const std::string& path);
 /// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
-/// The part as OFF, each number with 17 significant digits, which identify a double.
+/// Returns the part as OFF. Numbers have 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
 /// True if a name has exactly one place for a number: %d, or %0Nd for N digits (1 to 9) with
 /// leading zeros.
 bool is_numbered(const std::string& name);
-/// The name with the number in its place. Precondition: is_numbered(name), number >= 0.
+/// Returns the name with the number inserted. Preconditions: is_numbered(name), number >= 0.
 std::string numbered(const std::string& name, long number);
 
 /// The options --weld and --format for reading meshes (SceneArguments of scene_file.h).
@@ -91,16 +92,15 @@ class MeshCache {
   /// Precondition: the cache was constructed with a first frame.
   void set_frame(long frame) { frame_ = frame; }
 
-  /// How meshes are read from now on.
   void read_as(MeshReading reading) { reading_ = std::move(reading); }
   /// The end of the scene's name, such as ", welded at 1e-7*size"; empty if nothing is welded.
   std::string note() const { return reading_.weld.empty() ? "" : ", welded at " + reading_.weld; }
   /// Frees the meshes of names without numbers.
   void clear() { meshes_.clear(); }
 
-  /// The mesh of the path, or of standard input for "-", welded if read_as() says so. It is valid
-  /// until get() is called for the same path in another frame. Throws Error as load_mesh() does,
-  /// and without frames for a numbered name that is not a file.
+  /// Returns the mesh of the path, or of standard input for "-", welded if read_as() says so. The
+  /// mesh is valid until get() is called for the same path in another frame. Throws Error as
+  /// load_mesh() does; without frames also for a numbered name that is not a file.
   const Mesh& get(const std::string& path);
 
   /// The numbered names that get() was called with.
@@ -123,8 +123,8 @@ class MeshCache {
 /// The name of a file without its folder, without .gz and without its extension.
 std::string mesh_stem(const std::string& path);
 
-/// Collects vertices and polygons, checks them and triangulates. `line`: of the file; 0 for formats
-/// without lines.
+/// Collects vertices and polygons, checks them and triangulates the polygons. `line`: number of the
+/// line in the file; 0 for formats without lines.
 class MeshBuilder {
  public:
   /// first: the number of the first vertex and face in messages about vertices.
@@ -133,9 +133,9 @@ class MeshBuilder {
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
   /// p may be infinite or NaN if no face uses it. Throws Error beyond 2^32 - 1 vertices.
   void add_vertex(const Vec3& p, long line);
-  /// The faces that are added from now on belong to the group of this name; an empty name is
-  /// "default". Groups of one name in different `within`, such as objects of OBJ, are different:
-  /// #2, #3 .. is added to the names of later ones.
+  /// Faces that are added from now on belong to the group of this name. An empty name means
+  /// "default". The same name with another `within`, such as an object of OBJ, is another group;
+  /// its name gets #2, #3 and so on.
   void set_group(std::string_view group_name, std::string_view within = {});
   /// Adds a polygon. corners: indices of vertices from 0. Throws Error if there are fewer than 3
   /// corners, if a corner is not a vertex added before or is not finite, if the triangles exceed
@@ -153,7 +153,7 @@ class MeshBuilder {
   std::unordered_set<std::string> group_names_;
   std::uint32_t group_ = 0;
   std::uint32_t faces_ = 0;
-  std::unordered_map<std::uint32_t, long> not_finite_;  // vertices, and their lines
+  std::unordered_map<std::uint32_t, long> not_finite_;  // keys: vertices; values: lines
 };
 
 Mesh parse_obj(std::string_view bytes, const std::string& name);
@@ -161,15 +161,15 @@ Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// True if the bytes have exactly the length that their header, as of a binary STL file, gives.
+/// True if the bytes, read as a binary STL file, have exactly the length that the header gives.
 bool is_binary_stl(std::string_view bytes);
 
-/// The sign of the area of the triangle a, b, c in the plane of the coordinates u and v: 1 if it
-/// turns left at b (u to the right, v up), -1 if it turns right, 0 if the three points are
-/// collinear in that plane. Exact for finite doubles of any size.
+/// Returns the sign of the area of the triangle a, b, c in the plane of the coordinates u (to the
+/// right) and v (up): 1 for a left turn at b, -1 for a right turn, 0 if the three points are
+/// collinear in this plane. Exact for finite doubles of any size.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
-/// turn() by rounded arithmetic; 0 if its sign is not certain, since the three points are close to
-/// a line, or since products of differences overflow or underflow.
+/// Returns turn(), computed by rounded arithmetic; 0 if the sign is not certain. This happens if
+/// the points are close to a line, or if products of differences overflow or underflow.
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 using Turn = int (*)(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 
@@ -198,18 +198,17 @@ Triangulation triangulate(std::span<const Vec3> corners,
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // a fraction of the diagonal of the mesh's box
-  /// The distance. box: around the coordinates.
   double length(const Box& box) const {
     return value * (relative ? (box.hi - box.lo).stableNorm() : 1);
   }
 };
-/// "0.001" in the units of the mesh, or "1e-7*size". Throws Error naming the option.
+/// Reads "0.001", in the units of the mesh, or "1e-7*size". Throws Error naming the option.
 WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");
 
-/// Merges vertices that triangles use, in their order. A vertex becomes the nearest vertex that was
-/// kept before, if their distance (in double) is at most the tolerance; the first one of equally
-/// near vertices. Otherwise it is kept. Returns how many were merged. Triangles stay in order, even
-/// those that become segments or points.
+/// Merges vertices that triangles use, in their order, and returns how many were merged. A vertex
+/// becomes the nearest vertex that was kept before, if the distance (in double) is at most the
+/// tolerance; of equally near vertices the first. Otherwise it is kept. Triangles stay in order,
+/// even if they become segments or points.
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance);
 
 struct WeldHint {
@@ -217,8 +216,8 @@ struct WeldHint {
   double tolerance = 0;          // as a fraction of the diagonal of the object's box
   Vec3 place;                    // the end of an open edge
 };
-/// The least tolerance among 1e-13, 1e-12, .. 1e-5 at which merging the ends of the object's open
-/// edges would leave no edge open. Empty if there is no such tolerance, or no open edge.
+/// Returns the least tolerance among 1e-13, 1e-12, .. 1e-5 at which merging the ends of the
+/// object's open edges would leave no open edge. Empty if no tolerance does, or if no edge is open.
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object);
 
 /// For maps of positions. Equal positions must have equal bits: add 0.0, which turns -0.0 into 0.0.

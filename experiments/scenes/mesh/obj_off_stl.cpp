@@ -1,7 +1,7 @@
 // Reads and writes Wavefront OBJ and OFF (as Geomview writes it); reads STL. Skips materials,
 // normals, colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces,
-// since skipping them would lose geometry. A binary STL file may begin with "solid" too, so its
-// length is checked before its contents.
+// since skipping them would lose geometry. A binary STL file may begin with "solid", as text does,
+// so its length is checked before its contents.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,8 +30,8 @@ bool contains(std::span<const std::string_view> words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// The vertex of one corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, as an index from 0. A negative v
-// counts backwards from the last vertex.
+// Returns the vertex of one corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, as an index from 0. A
+// negative v counts backwards from the last vertex.
 std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, const TextReader& in) {
   const std::string_view text = token.substr(0, token.find('/'));
   if (token.find_first_not_of("0123456789/-+") != std::string_view::npos || text.empty() ||
@@ -54,7 +54,7 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
-// Throws Error if the bytes look like another format. Precondition: they are no valid OBJ.
+// Throws Error if the bytes look like another format. Precondition: the bytes are no valid OBJ.
 void refuse_other_format(std::string_view bytes, const std::string& name) {
   const std::string start = lower_case(bytes.substr(0, 5));
   const bool stl = is_binary_stl(bytes) || start == "solid";
@@ -66,8 +66,8 @@ void refuse_other_format(std::string_view bytes, const std::string& name) {
                 "rename it by its format, or get it again");
 }
 
-// Refuses a lone CR if lines end with LF. The CR would be a blank, so that the text after it would
-// be lost if it follows a comment or a vertex.
+// Refuses a lone CR if lines end with LF. The CR would count as a blank. So text after the CR would
+// be lost if the CR follows a comment or a vertex.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -162,8 +162,8 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Reads a number of elements, and checks that so many fit into the bytes left: each takes
-// `bytes_each` bytes of text or more, but the last one may lack its newline.
+// Reads a number of elements, and checks that so many elements fit into the rest of the bytes. An
+// element takes at least `bytes_each` bytes of text; the last one may lack its newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
   if (value < 0) in.fail(fmt::format("the number of {} is {}", what, value), kDamaged);
@@ -260,7 +260,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 84;    // 80 arbitrary bytes, then the number of triangles
 constexpr std::size_t kTriangleBytes = 50;  // normal and corners as 12 floats, 2 arbitrary bytes
 
-// Gives corners at one position one vertex.
+// Gives all corners at the same position the same vertex.
 class Welder {
  public:
   explicit Welder(MeshBuilder& mesh) : mesh_(mesh) {}
@@ -285,7 +285,7 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// A text has no NUL bytes. A binary file has some in its header or in its attribute bytes.
+// A text has no NUL bytes. A binary file has NUL bytes in its header or in its attribute bytes.
 bool has_nul(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') != bytes.npos; }
 
 bool is_text(std::string_view bytes) {
@@ -334,7 +334,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Reads the expected words, which may be on several lines. Throws Error if others stand there.
+// Reads the expected words, which may be on several lines. Throws Error if it finds other words.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -347,8 +347,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line. Since a file may be a single line, stops before a word `stop` that
-// has `after` among the next few words.
+// Reads the rest of the line. Stops before a word `stop` if `after` is among the next few words,
+// since a file may have only one line.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {
