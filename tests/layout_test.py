@@ -212,6 +212,37 @@ def check():
     return '\n'.join(said) or f'layout: {len(found)} includes obey the table', len(said)
 
 
+def graph():
+    """The folders by level, and the arrows between them."""
+    files = files_of(OURS, SOURCES)
+    folders = [folder for folder in MAY_INCLUDE if folder != 'tests' and folder in map(folder_of, files)]
+    arrows = {folder: set() for folder in MAY_INCLUDE}
+    for here, there in ((folder_of(file), folder_of(included)) for file, _, included in includes(files)):
+        if here and there and here != there:
+            arrows[here].add(there)
+    good = {folder: arrows[folder] & ALLOWED[folder] for folder in folders}
+
+    def level(folder):
+        return 1 + max(map(level, good.get(folder, ())), default=-1)
+
+    drawn = {folder: [to for to in MAY_INCLUDE if to in good[folder] and
+                      not any(to in reached(via, good) for via in good[folder] - {to})] for folder in folders}
+    against = {folder: [to for to in MAY_INCLUDE if to in arrows[folder] - good[folder]] for folder in folders}
+    upward = sum(level(to) >= level(folder) for folder in folders for to in against[folder])
+    levels = range(max(map(level, folders)), -1, -1)
+    texts = {folder: drawn[folder] + [f'{to} (against the table)' for to in against[folder]] for folder in folders}
+    count = len({os.path.dirname(file) for file in files if file.startswith('experiments/')})
+    return '\n'.join([
+        'Folders by level. A folder includes only folders of lower levels.',
+        *(f"{at:5}  {', '.join(folder for folder in folders if level(folder) == at)}" for at in levels),
+        '\nArrows: a folder, and those that it includes directly. Left out are the arrows to folders',
+        'that it also reaches through another folder.',
+        *(f"  {folder:27} -> {', '.join(texts[folder])}" for folder in folders if texts[folder]),
+        f'\n{len(folders)} folders ({count} in experiments, at most {MOST_FOLDERS}), {len(levels)} levels, '
+        f'{sum(len(arrows[folder]) for folder in folders)} arrows ({sum(map(len, drawn.values()))} drawn), '
+        f'{sum(map(len, against.values()))} against the table, {upward} upward'])
+
+
 # ---- self-test: each change of a small tree that obeys every rule, and the violation that it gives (none: '')
 
 TREE = {'CMakeLists.txt': 'top', 'README.md': 'top', 'docs/index.md': 'page', 'build/junk': 'junk', '.gitignore': '/build*/',
@@ -315,6 +346,10 @@ def changes():
 
 def self_test():
     failed = []
+    for change, text in ({}, 'experiments/method +-> offsets.*, 0 upward'), \
+            ({'core/base/error.h': '#include "core/view/view.h"'}, r'core/view \(against the table\).*, 1 upward'):
+        put(change)
+        failed += [graph()] if not re.search(text, graph(), re.DOTALL) else []
     for change, expected in itertools.chain(changes(), [({}, 'git')] if shutil.which('git') else [], CHANGED):
         put(change)
         if expected == 'git':  # from here on the top level is that of a git checkout
@@ -327,12 +362,12 @@ def self_test():
     return '\n'.join(failed) or 'layout: every rule is caught when it is broken', bool(failed)
 
 
-root = sys.argv[1] if sys.argv[1:] else os.path.dirname(os.path.realpath(__file__)) + '/..'
+option, *root = sys.argv[1:] if sys.argv[1:] and sys.argv[1][0] == '-' else ['--check', *sys.argv[1:]]
 for variable in 'GIT_DIR', 'GIT_WORK_TREE', 'GIT_INDEX_FILE':  # a git hook sets these for its own repository
     os.environ.pop(variable, None)
 with tempfile.TemporaryDirectory() as scratch:
-    os.chdir(scratch if root == '--self-test' else root)
-    message, result = self_test() if root == '--self-test' else check()
+    os.chdir(scratch if option == '--self-test' else root[0] if root else os.path.dirname(os.path.realpath(__file__)) + '/..')
+    message, result = {'--self-test': self_test, '--graph': lambda: (graph(), 0), '--check': check}[option]()
     os.chdir('/')
 print(message)
 sys.exit(result > 0)
