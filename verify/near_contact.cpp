@@ -84,10 +84,9 @@ NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3
 /// An edge of one triangle that passes through the face of the other one.
 struct Passing {
   double least = -HUGE_VAL;  // the least weight of the point in the face
-  std::array<Vec3, 2> weights = {Vec3::Zero(),
-                                 Vec3::Zero()};  // weights of a point of a and of a point of b
-  int side = 0;                                  // 0: the edge is of a; 1: the edge is of b
-  double gap = HUGE_VAL;                         // between the two points, summed over axes
+  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // on a, and on b
+  int side = 0;                                                // 0: the edge is one of a; 1: of b
+  double gap = HUGE_VAL;  // between the points, summed over axes
 };
 
 /// Keeps in `best` the edge of x whose point on y's plane is deepest in y. side: 0 if x is a.

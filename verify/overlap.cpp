@@ -168,8 +168,7 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
       return std::nullopt;
     }
     const Plane of_t = plane_of(t);
-    const int height =
-        of_t.side(p) * sgn(of_t.normal[axis]);  // sign of the height of p over the triangle
+    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // sign: is p above t?
     if (height == 0) {
       for (const Q3& c : corner) {
         if (plane.side(c) != 0) return std::nullopt;
