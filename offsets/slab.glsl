@@ -1,8 +1,9 @@
-// Cuts a line through a pixel centre along z with slabs and halfspaces; every bound is widened outward. This file compiles as
+// Cuts a line through a pixel centre along z with slabs and halfspaces. Every bound is widened outward. This file compiles as
 // GLSL and as C++, before the file of an offset.
 //
-// A pixel may be a lane of a vector (core/native/glsl_lanes-inl.h). So a FAR_BOOL may differ from lane to lane and chooses by
-// FAR_SELECT, where both sides are computed; `if` asks only what is the same for all pixels of a solid, by FAR_UNIFORM.
+// In C++, a float may hold many pixels, one in each lane of a vector (core/native/glsl_lanes-inl.h). A FAR_BOOL may then differ
+// from lane to lane: FAR_SELECT computes both of its sides and chooses per lane. An `if` needs FAR_UNIFORM: a condition that is
+// the same for all pixels of a solid.
 //
 // An operation errs by u = 2^-23 in any rounding mode, a division by 2.5 u (GLSL 4.50, 4.7.1; |divisor| >= 2^-20 here, the
 // quotient < 2^126); results below 2^-126 may be flushed. The constants are derived in docs/budget.md, "The oriented box".
@@ -10,13 +11,14 @@
 #ifndef FAR_WIDEN  // 0 in the test that shows what happens without the widening
 #define FAR_WIDEN 1.0f
 #endif
-FAR_CONSTANT kEightU = FAR_WIDEN * 9.5367431640625e-7f;  // 8 u; powers of two, so the constants are exact
+FAR_CONSTANT kEightU = FAR_WIDEN * 9.5367431640625e-7f;  // 8 u, a power of two, so exact
 FAR_CONSTANT kFourU = FAR_WIDEN * 4.76837158203125e-7f;
 FAR_CONSTANT kUp = 1.0f + kEightU;
-FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;          // beyond what is flushed
+FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;  // results below 2^-126 may be flushed to zero
 FAR_CONSTANT kParallel = 9.5367431640625e-7f;  // 2^-20
 
-// Cuts [lo, hi] with one slab; false: the line misses it. d = c - m.xy, reach >= |z - m.z| on the solid.
+// Cuts the interval [lo, hi] of the line with one slab. Returns false if the line misses the slab. m is the centre of the slab.
+// d = c - m.xy for the pixel centre c; mz = m.z. reach >= |z - m.z| on the solid.
 FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = slab.x * d.x;
   FAR_PRECISE float sy = slab.y * d.y;
@@ -44,7 +46,8 @@ FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT
   return FAR_BOOL(true);
 }
 
-// Cuts [lo, hi] with a halfspace n . (x - m.x, y - m.y, z - m.z) <= h; false: the line misses it.
+// Cuts the interval [lo, hi] of the line with a halfspace n . (x - m.x, y - m.y, z - m.z) <= h. Returns false if the line
+// misses it.
 FAR_KERNEL FAR_BOOL far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = n.x * d.x;
   FAR_PRECISE float sy = n.y * d.y;

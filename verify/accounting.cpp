@@ -1,16 +1,16 @@
-// Joins a tree of boxes with itself. Each pair of triangles that counts is met exactly once: by
-// itself, or as one of all pairs of two nodes. The upper levels of the tree divide the objects, the
-// lower levels the triangles of one object. So two disjoint subtrees hold different objects, or
-// triangles of one object; in the second case they are joined iff the object is `self`. If the
-// boxes of two nodes are far enough apart, all pairs of the nodes are counted at once. Boxes are
-// minima and maxima of the coordinates. One difference in double is compared with the clearance.
-// Rounding is monotone, so "apart" is proved, and nodes that are apart hold only triangles that are
-// apart. The order in which the tree divides changes the speed, never the answer.
+// Joins a tree of boxes with itself, to find the pairs of triangles whose boxes overlap. The upper
+// levels of the tree divide the set of objects. The lower levels divide the triangles of one
+// object. So two disjoint subtrees hold either different objects, or triangles of one object;
+// subtrees of one object are joined iff the object is `self`. If the boxes of two nodes are far
+// enough apart, all pairs of the two nodes are counted at once. How the tree divides changes the
+// speed, never the answer.
 //
-// A sweep along one axis would be quadratic for bundles of long parallel needles. The tree counts
-// the pairs that it passes over, so the classes add up only if no pair was lost. They would also
-// add up if it lost one pair and met another twice. So the certificate's BoxPairs enumerates the
-// pairs whose boxes overlap again, and the two sets are compared.
+// A box has the minima and maxima of the coordinates. A gap between boxes is a difference in
+// double. Rounding is monotone: if the rounded gap exceeds the clearance, the exact gap does.
+//
+// The classes of Accounting add up only if the join lost no pair. But they would add up, too, if
+// the join lost one pair and counted another twice. So the certificate's BoxPairs enumerates the
+// pairs with overlapping boxes again, and the two sets are compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -47,9 +47,10 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
 
 namespace {
 
-// Largest number of triangles in a leaf. More make fewer nodes, but more tests of single boxes.
+// At most this many triangles are in a leaf. Larger leaves need fewer nodes, but more tests of
+// single boxes.
 constexpr std::uint32_t kLeafSize = 4;
-// Pairs decided at a time, so that no list of overlaps is ever stored.
+// At most this many pairs are decided at a time, so that the list of all overlaps is never stored.
 constexpr std::size_t kChunk = 1 << 18;
 constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -67,8 +68,8 @@ void include(Bounds& bounds, const Bounds& other) {
   }
 }
 
-/// False iff a difference of coordinates along an axis exceeds the clearance. Exact with clearance
-/// 0, since the difference of unequal doubles is never 0.
+/// Returns false iff a gap between the boxes along an axis, computed in double, exceeds the
+/// clearance. Exact for clearance 0, since the difference of unequal doubles is never 0.
 bool meet(const Bounds& a, const Bounds& b, double clearance) {
   for (int axis = 0; axis < 3; ++axis) {
     if (b.lo[axis] - a.hi[axis] > clearance || a.lo[axis] - b.hi[axis] > clearance) return false;
@@ -89,19 +90,19 @@ std::vector<Bounds> bounds_of_triangles(const Scene& scene) {
 
 struct Node {
   Bounds bounds;
-  std::uint32_t first = 0;  // into Tree::order
+  std::uint32_t first = 0;  // index into Tree::order_
   std::uint32_t count = 0;
-  std::uint32_t left = kNone;  // kNone: a leaf
+  std::uint32_t left = kNone;  // kNone in a leaf
   std::uint32_t right = kNone;
-  bool within = false;  // pairs of two triangles of this node may count
+  bool within = false;  // two triangles of this node may make a pair that counts
 };
 
 /// Moves the half of the items with the smaller centres to the front, along the axis on which the
-/// centres spread most; returns the middle.
+/// centres spread most. Returns the number of these items.
 std::size_t divide(std::span<std::uint32_t> items, const std::vector<Bounds>& bounds) {
   const auto centre = [&](std::uint32_t item, int axis) {
     return bounds[item].lo[axis] / 2 +
-           bounds[item].hi[axis] / 2;  // halves first: the sum may overflow
+           bounds[item].hi[axis] / 2;  // each is halved, since lo + hi may overflow
   };
   int widest = 0;
   double spread = -1;
@@ -134,8 +135,8 @@ class Tree {
     if (!objects.empty()) root_ = build_objects(objects);
   }
 
-  /// Calls visit(a, b), with a and b in any order, for each pair that counts and whose bounds meet;
-  /// returns the number of pairs that count and whose bounds do not meet.
+  /// Calls visit(a, b), a and b in any order, for each pair that counts and whose bounds meet.
+  /// Returns the number of the other pairs that count.
   std::uint64_t join(auto& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
   }
@@ -216,14 +217,14 @@ class Tree {
 
   const Scene& scene_;
   double clearance_;
-  std::vector<Bounds> bounds_;  // per triangle
+  std::vector<Bounds> bounds_;
   std::vector<Bounds> object_bounds_;
-  std::vector<std::uint32_t> order_;  // triangles; each node owns a range
+  std::vector<std::uint32_t> order_;  // indices of triangles; each node owns a range
   std::vector<Node> nodes_;
   std::uint32_t root_ = kNone;
 };
 
-/// Pairs of objects that are ignored. Does not use core/scene/scene for this, since the culling
+/// The ignored pairs of objects. Does not use IgnoredObjects of core/scene/scene, since the culling
 /// code does.
 class Ignored {
  public:
@@ -246,10 +247,11 @@ class Ignored {
 
  private:
   std::set<ObjectPair> pairs_;
-  std::uint64_t triangles_ = 0;  // pairs of triangles of ignored objects
+  std::uint64_t triangles_ = 0;
 };
 
-/// The kept pairs with a lookup: the pairs (a, b) of triangle a lie in [starts[a], starts[a + 1]).
+/// The sorted kept pairs with a lookup: the kept pairs (a, b) of a triangle a have the indices
+/// starts_[a] to starts_[a + 1] - 1.
 class Kept {
  public:
   Kept(const Scene& scene, const std::vector<std::uint32_t>& owner, const Ignored& ignored,
@@ -281,8 +283,8 @@ class Kept {
   std::vector<std::size_t> starts_;
 };
 
-/// The number of pairs that count: the products of the sizes of different objects, and n (n - 1) /
-/// 2 for each object that is `self`. It is below 2^63 for 32-bit n.
+/// Returns the number of pairs that count: n m for any two objects of n and m triangles, and
+/// n (n - 1) / 2 for each object that is `self`. It is below 2^63 for 32-bit n.
 std::uint64_t pairs_that_count(const Scene& scene) {
   std::uint64_t before = 0;
   std::uint64_t pairs = 0;
@@ -314,14 +316,14 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   require_clearance("account", clearance);
   Accounting result;
   result.pairs_total = pairs_that_count(scene);
-  std::vector<std::uint32_t> owner;  // per triangle; pairs_that_count() found no gaps
+  std::vector<std::uint32_t> owner;  // the object of each triangle
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o)
     owner.insert(owner.end(), scene.objects[o].triangle_count, o);
   const Ignored ignored(scene, options.ignored);
   result.ignored = ignored.triangle_pairs();
   const Kept kept_pairs(scene, owner, ignored, kept);
 
-  std::vector<TrianglePair> chunk;  // of pairs that were not kept
+  std::vector<TrianglePair> chunk;  // pairs that were not kept
   const auto decide_chunk = [&] {
     const Collisions missed = steps.decide(scene, chunk, {.clearance = clearance});
     result.neighbours += missed.neighbours_apart;
@@ -360,7 +362,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   result.pairs_kept += kept_disjoint;
   if (result.pairs_kept != kept.size())
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
-  // The tree counts pairs of whole nodes, ignored pairs included.
+  // The tree counts ignored pairs as well, so those with disjoint boxes are subtracted.
   const std::uint64_t ignored_disjoint = result.ignored - ignored_overlapping;
   result.certified_by_boxes = disjoint - kept_disjoint - ignored_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");

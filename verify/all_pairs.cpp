@@ -1,6 +1,6 @@
-// The method `exact`: a tree finds pairs of overlapping boxes; the thread that finds a pair decides
-// it. In verify/ only this file uses the join of core. Accounting and certificates, which check the
-// answers, find such pairs by trees of their own.
+// The method `exact`: core's join finds pairs of overlapping boxes, and the thread that finds a
+// pair decides it. In verify/, only this file uses the join of core. Accounting and certificates
+// check the answers, so they find the pairs with overlapping boxes by trees of their own.
 #include <algorithm>
 #include <functional>
 #include <mutex>
@@ -21,11 +21,11 @@
 namespace farcull {
 namespace {
 
-// Whether the closed boxes of the triangles are farther apart than the clearance D along an axis,
-// by differences in double. Rounding is monotone: if a rounded difference is above D, so is the
-// exact one. A pair for which none is above D is also found by the join. The join grows each box by
-// half of D, rounded up to the next double at least, so by D/2 + ulp(D)/2 or more. If grown boxes
-// are disjoint, an exact difference is above D + ulp(D), and no rounding brings it down to D.
+// True if the closed boxes of the triangles are more than the clearance D apart along an axis, by
+// differences in double. Rounding is monotone: if a rounded difference is above D, so is the exact
+// difference. The join finds all pairs for which this function is false. It grows each box by half
+// of D, rounded up to the next double at least, so by D/2 + ulp(D)/2 or more. If the grown boxes
+// are disjoint, an exact difference is above D + ulp(D), so its rounded value is above D.
 bool farther_along_an_axis(const Scene& scene, const TrianglePair& pair, double clearance) {
   const Box a = grown_box(scene, pair.a, 0), b = grown_box(scene, pair.b, 0);
   for (int k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
   ExactResult result;
   GatheredPairs pairs, neighbour_pairs;
   std::set<std::thread::id> deciding;
-  std::mutex mutex;  // guards the four objects above
+  std::mutex mutex;  // guards result, pairs, neighbour_pairs and deciding
   OrderedPairs(scene, question.clearance, {}, true, threads)
       .give([&](std::vector<TrianglePair>& some) {
         if (question.clearance > 0) {

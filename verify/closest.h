@@ -1,7 +1,7 @@
 // Distances of triangles and the points that realise them, in exact arithmetic.
 //
-// Triangles are as in verify/exact.h. A distance is the root of a rational number, so it is kept as
-// its square, and rounded once, to the nearest double.
+// Triangles are as in verify/exact.h. A distance is the root of a rational number. So its square is
+// stored exactly, and the distance itself is rounded once, to the nearest double.
 #pragma once
 
 #include <array>
@@ -16,19 +16,18 @@
 
 namespace farcull {
 
-/// The exact square of a distance, a rational number >= 0. Copies share one value, which is
-/// constant.
+/// The exact square of a distance, a rational number >= 0. It is constant, and copies share it.
 class SquaredDistance {
  public:
-  SquaredDistance();  // 0
+  SquaredDistance();  // the square is 0
   struct Value;       // defined in verify/squared_distance.h, for verify alone
   explicit SquaredDistance(std::shared_ptr<const Value> value);
-  /// The square of this distance. Precondition: finite, >= 0.
+  /// Returns the square of this distance. Precondition: the distance is finite and >= 0.
   static SquaredDistance of(double distance);
 
-  /// The distance: the root, rounded to nearest, ties to even; infinity beyond the largest double.
+  /// Returns the distance, rounded to nearest, ties to even; infinity beyond the largest double.
   double root() const;
-  /// "numerator/denominator" in lowest terms, decimal.
+  /// Returns "numerator/denominator" in lowest terms, decimal.
   std::string text() const;
   bool is_zero() const;
   const Value& value() const { return *value_; }
@@ -40,39 +39,41 @@ class SquaredDistance {
   std::shared_ptr<const Value> value_;
 };
 
-/// The part of a triangle that a point lies on. If the point lies on several parts, the first
-/// counts: a corner before an edge before the face, a lower number before a higher one.
+/// The part of a triangle that a point lies on. If a point lies on several parts, it has the first
+/// of them in this order: corner 0, 1, 2, edge 0, 1, 2, face.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
   FeatureKind kind = FeatureKind::vertex;
-  std::uint8_t index = 0;  // vertex: the corner; edge: from corner `index` to the next; face: 0
+  std::uint8_t index = 0;  // vertex: the corner; edge: its first corner; face: 0
   auto operator<=>(const Feature&) const = default;
 };
-/// "vertex 2", "edge 0" or "face".
+/// Returns "vertex 2", "edge 0", "face" and so on.
 std::string to_string(const Feature& feature);
-/// The number of a feature in certificates: 0 to 2 the corners, 3 to 5 the edges, 6 the face.
+/// Returns the number of a feature in certificates: 0 to 2 the corners, 3 to 5 the edges, 6 the
+/// face.
 constexpr std::uint8_t number_of(const Feature& feature) {
   return static_cast<std::uint8_t>(3 * static_cast<int>(feature.kind) + feature.index);
 }
 
-/// Two closest points of two triangles. If several pairs of points are equally near (parallel
-/// edges, triangles that overlap), their features choose one pair (docs/proximity.md, "Two nearest
+/// Two closest points of two triangles. Several pairs of points may be equally near (parallel
+/// edges, triangles that overlap). Then features choose one pair (docs/proximity.md, "Two nearest
 /// points"). A feature includes its boundary here. The point of a is on the least feature of a that
-/// has such a point. The point of b is on the least feature of b that has a partner for the point
-/// of a.
+/// has a closest point. The point of b is on the least feature of b that has a partner for the
+/// point of a.
 struct Closest {
   SquaredDistance squared;
   double distance = 0;              // squared.root()
-  std::array<Vec3, 2> points;       // of a and of b, each coordinate rounded once; never -0.0
-  std::array<Feature, 2> features;  // the exact points lie on these
+  std::array<Vec3, 2> points;       // on a and on b, each coordinate rounded once; never -0.0
+  std::array<Feature, 2> features;  // the features of the exact points
 };
 
-/// Closest points of the closed triangles. If the triangles share a point, the distance is 0 and
-/// both points are one common point. The answer depends on the corners and their order alone. With
-/// a and b exchanged the distance stays the same, and so do the points unless others are as near.
+/// Returns closest points of the closed triangles. If the triangles share a point, the distance is
+/// 0 and both points are one common point. The answer depends only on the corners and their order.
+/// Exchanging a and b does not change the distance. It changes the points only if others are as
+/// near.
 Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The square of the distance alone.
+/// Returns only the square of the distance.
 SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// The pair at the least distance; of several equally near pairs, the first in the order given.
@@ -80,28 +81,28 @@ struct NearestPair {
   TrianglePair pair;
   Closest closest;
 };
-/// The nearest of these pairs of triangles; empty if `pairs` is empty. Throws std::logic_error if a
-/// pair names a triangle that the scene does not have.
+/// Returns the nearest of these pairs of triangles; nothing if `pairs` is empty. Throws
+/// std::logic_error if a pair names a triangle that the scene does not have.
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
 // ---- two parallel planes between two triangles, exactly. They show of many other pairs of
 // triangles at once that none of these pairs is nearer.
 
-/// Let p and q be closest points of the triangles a and b, and w = q - p. One plane goes through p,
-/// the other one through q; both are perpendicular to w. The reach of a triangle is how far it
-/// extends beyond the first plane in the direction of w. The start of a triangle is how far behind
-/// the second plane it begins. Both have the same unit, and are negative on the plane's other side.
-/// If the reach of s is at most the start of t, then w.(y - x) >= w.w for all points x of s and y
-/// of t, so |y - x| >= |w|: s and t are no nearer than a and b. If it is below the start, they are
-/// farther apart.
+/// Let p and q be closest points of the triangles a and b, and w = q - p. Both planes are
+/// perpendicular to w. The first plane goes through p, the second plane through q. reach(s) is how
+/// far a triangle s extends beyond the first plane in the direction of w. start(t) is how far
+/// behind the second plane a triangle t begins. Both lengths have the same unit, and are negative
+/// on the other side of the plane. If reach(s) <= start(t), then w.(y - x) >= w.w for all points x
+/// of s and y of t. So |y - x| >= |w|: s and t are no nearer than a and b. If reach(s) < start(t),
+/// they are farther apart.
 class PlanesBetween {
  public:
   /// Throws std::logic_error if the triangles meet.
   PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-  /// At least the exact reach; equal to it if the exact reach is a double, such as 0.
+  /// Returns at least the exact reach; the exact reach itself if it is a double, such as 0.
   double reach(const std::array<Vec3, 3>& t) const { return place(t, 0); }
-  /// At most the exact start; equal to it if the exact start is a double.
+  /// Returns at most the exact start; the exact start itself if it is a double.
   double start(const std::array<Vec3, 3>& t) const { return place(t, 1); }
 
  private:

@@ -1,10 +1,9 @@
 // Finds two closest points of two features (corner, edge or face of a triangle): the points whose
-// difference is perpendicular to both features. In integers, so nothing is rounded.
-// verify/closest_points.cpp derives the answer for triangles from this. Other sources of verify use
-// only the vectors.
+// difference is perpendicular to both features. All numbers are integers, so nothing is rounded.
+// verify/closest_points.cpp uses this for triangles. Other sources of verify use only the vectors.
 //
-// Corners are integers of one scale. A point of a feature is a corner plus multiples of the edges
-// from that corner. The multiples of both points are fractions with one denominator (Found::below).
+// The corners are integers of one scale. A point of a feature is a corner plus multiples of the
+// edges from that corner. The multiples are fractions with the denominator Found::below.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -38,10 +37,10 @@ Vector<Integer> cross(const Vector<Integer>& x, const Vector<Integer>& y) {
           Integer(x[0] * y[1] - x[1] * y[0])};
 }
 
-/// The number of the corner at which an edge ends. Edge i begins at corner i.
+/// Returns the number of the corner at which an edge ends. Edge i begins at corner i.
 constexpr int edge_end(int edge) { return edge == 2 ? 0 : edge + 1; }
 
-/// Bit i is set where corner i belongs to the feature.
+/// Bit i of the result is set if corner i belongs to the feature.
 constexpr unsigned corners_of(const Feature& f) {
   if (f.kind == FeatureKind::vertex) return 1u << f.index;
   return f.kind == FeatureKind::edge ? 1u << f.index | 1u << edge_end(f.index) : 7u;
@@ -51,17 +50,18 @@ constexpr unsigned corners_of(const Feature& f) {
 template <class Integer>
 struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0
-  Vector<Integer> direction;  // a positive multiple of the difference, from a's point to b's
-  Integer below;              // > 0, the denominator of `multiples`
-  // The points in coordinates of their triangles, a and b, as numerators. Edge: t, in start + t *
-  // edge. Face: s and t, in corner 0 + s * (corner 1 - corner 0) + t * (corner 2 - corner 0).
-  // Vertex: not used.
+  Vector<Integer> direction;  // a positive multiple of the vector from a's point to b's point
+  Integer below;              // > 0; the denominator of `multiples`
+  // The numerators s, t of the point of a, and of the point of b. The point of an edge is start + t
+  // / below * edge; t is stored first. The point of a face is corner 0 + s / below * (corner 1 -
+  // corner 0) + t / below * (corner 2 - corner 0). Not used for a vertex.
   std::array<std::array<Integer, 2>, 2> multiples;
   bool inside = false;  // neither point lies on the boundary of its feature
 };
 
-// Each of these functions looks for such a pair of points. It returns true if the closed features
-// have exactly one such pair, which it writes to `f`; if it returns false, `f` has no meaning.
+// Each of these functions looks for two points as described at Found. It returns true if the closed
+// features have exactly one such pair of points, which it writes to `f`. If it returns false, `f`
+// has no meaning.
 
 template <class Integer>
 bool vertex_vertex(const Vector<Integer>& p, const Vector<Integer>& q, Found<Integer>& f) {
@@ -73,7 +73,7 @@ bool vertex_vertex(const Vector<Integer>& p, const Vector<Integer>& q, Found<Int
   return true;
 }
 
-/// From the corner p to the edge from q to q_end.
+/// Looks for the points of the corner p and the edge from q to q_end.
 template <class Integer>
 bool vertex_edge(const Vector<Integer>& p, const Vector<Integer>& q, const Vector<Integer>& q_end,
                  Found<Integer>& f) {
@@ -91,9 +91,9 @@ bool vertex_edge(const Vector<Integer>& p, const Vector<Integer>& q, const Vecto
   return true;
 }
 
-/// From the corner p to the face of t. Let e and f be the edges from corner 0, n = e x f, and p -
-/// t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f, and n x f is perpendicular to n, so the
-/// scalar product with n gives l; m follows in the same way.
+/// Looks for the points of the corner p and the face of t. Let e and f be the edges from corner t0,
+/// n = e x f, and p - t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f. Since n x f is
+/// perpendicular to n, the scalar product with n gives l. m follows in the same way.
 template <class Integer>
 bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Integer>& f) {
   const Vector<Integer> to_1 = minus(t[1], t[0]);
@@ -117,7 +117,8 @@ bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Inte
   return true;
 }
 
-/// From the edge p to p_end to the edge q to q_end. Parallel edges have no single pair.
+/// Looks for the points of the edge p to p_end and the edge q to q_end. Parallel edges have no
+/// single pair.
 template <class Integer>
 bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vector<Integer>& q,
                const Vector<Integer>& q_end, Found<Integer>& f) {
@@ -142,8 +143,8 @@ bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vec
   return true;
 }
 
-/// True if the edge from p to p_end crosses the plane of t in one point, within the face: the
-/// distance is 0.
+/// True if the edge from p to p_end crosses the plane of t in one point that lies in the face. The
+/// distance is then 0.
 template <class Integer>
 bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Corners<Integer>& t,
                Found<Integer>& f) {
@@ -159,7 +160,7 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   }
   if (above < 0 || above > fall) return false;
   for (int i = 0; i < 3; ++i) {
-    // The point in which the edge crosses the plane, relative to corner i, times `fall`.
+    // The point where the edge crosses the plane, relative to corner i, times `fall`.
     Vector<Integer> at = minus(p, t[i]);
     for (int k = 0; k < 3; ++k) at[k] = at[k] * fall + u[k] * above;
     if (dot(n, cross(minus(t[edge_end(i)], t[i]), at)) < 0) return false;
@@ -173,8 +174,7 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   return true;
 }
 
-/// Looks for the pair of points of a feature of a and a feature of b. Two faces never have a single
-/// pair.
+/// Looks for the points of a feature of a and a feature of b. Two faces never have a single pair.
 template <class Integer>
 bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>& b,
           const Feature& of_b, Found<Integer>& f) {
@@ -196,7 +196,7 @@ bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>
   return edge_face(a[i], a[edge_end(i)], b, f);
 }
 
-/// The point of the feature, times f.below.
+/// Returns the point of the feature, times f.below. side: 0 for a point of a, 1 for a point of b.
 template <class Integer>
 Vector<Integer> point_of(const Corners<Integer>& t, const Feature& feature, const Found<Integer>& f,
                          int side) {
@@ -213,7 +213,7 @@ Vector<Integer> point_of(const Corners<Integer>& t, const Feature& feature, cons
   return out;
 }
 
-// Guesses in doubles on which features two closest points lie (Ericson, Real-Time Collision
+// Guesses in doubles the features on which two closest points lie (Ericson, Real-Time Collision
 // Detection, 2005, sections 5.1.5 and 5.1.9). verify/closest_points.cpp proves the guess.
 
 struct Guess {
@@ -221,7 +221,7 @@ struct Guess {
   Feature of_a, of_b;
 };
 
-/// The feature at parameter s of edge i: the edge, or the corner at an end.
+/// Returns the feature at parameter s of edge i: a corner if s <= 0 or s >= 1, otherwise the edge.
 inline Feature on_edge(int i, double s) {
   if (s <= 0) return {FeatureKind::vertex, static_cast<std::uint8_t>(i)};
   if (s >= 1) return {FeatureKind::vertex, static_cast<std::uint8_t>(edge_end(i))};
@@ -230,8 +230,8 @@ inline Feature on_edge(int i, double s) {
 
 inline double in_unit(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
-/// Updates the guess with edge i of a (from a[i] along u) and edge j of b (from b[j] along v). If
-/// the edges are nearly parallel, an end is closest or nearly so.
+/// Updates the guess with edge i of a (from a[i] along u) and edge j of b (from b[j] along v). For
+/// nearly parallel edges an end is used, which is closest or nearly so.
 inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
                         const std::array<Vec3, 3>& b, const Vec3& v, int j, Guess& guess) {
   const Vec3 w = a[i] - b[j];
@@ -247,8 +247,8 @@ inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
   if (squared < guess.squared) guess = {squared, on_edge(i, s), on_edge(j, t)};
 }
 
-/// True if corner p lies over the face of t and is nearer to it than the guess; then stores the
-/// square of the distance in the guess.
+/// True if corner p lies over the face of t and is nearer to the face than the guess. Then the
+/// square of the distance is written to the guess.
 inline bool guess_face(const Vec3& p, const std::array<Vec3, 3>& t, Guess& guess) {
   const Vec3 e = t[1] - t[0], f = t[2] - t[0], w = p - t[0];
   const Vec3 n = e.cross(f);

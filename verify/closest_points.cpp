@@ -14,23 +14,24 @@
 
 namespace farcull {
 
-// Doubles guess the features, integers prove the guess; if it is wrong, all features are tried.
+// Doubles guess the features, and integers prove the guess. If it is wrong, all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
-// power of two that makes them integers; all that follows adds, subtracts and multiplies integers.
+// power of two that makes them integers. All that follows adds, subtracts and multiplies integers.
 //
 // Which answer: the first pair of features, F of a and G of b ordered by F and then by G, that
 // holds two closest points. docs/proximity.md ("Two nearest points") proves that F and G hold only
-// one such pair, and that it is the pair that find() constructs. For other features find() gives
-// points of these features or nothing, so never nearer points. So the answer is the first of the
-// nearest points that find() gives for all pairs of features in order.
+// one such pair, and that find() constructs it. For other features find() gives points of these
+// features or nothing, so never nearer points. So the answer is the first of the nearest points
+// that find() gives for all pairs of features in order.
 //
 // Proof of a guess. By the theorem there, p and q with w = q - p are closest points iff w.(x - p)
 // <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. All closest points of a
-// lie in the hull of the corners x whose product is 0, and those of b in the hull of such y. So a
-// guess is the answer if these corners are just those of F and of G, if p and q are inside F and G,
-// and if F or G is a corner or both are edges that are not parallel. Else the features of these
-// corners are tried in order, until two of them are as near.
+// lie in the hull of the corners x with product 0. All closest points of b lie in the hull of the
+// corners y with product 0. So a guess is the answer under three conditions: these corners are just
+// the corners of F and of G; p and q are inside F and G; F or G is a corner, or both are edges that
+// are not parallel. Otherwise the features of these corners are tried in order, until two of them
+// are as near.
 //
 // Doubles only choose what to try, and leave out features that are provably not closest. So only
 // the final rounding affects the answer.
@@ -61,8 +62,9 @@ struct Answer {
   Found<Integer> found;
 };
 
-/// Bit i is set if d.(x - p) is 0, where x is corner i of t and p a corner of the feature of t.
-/// Returns 8 if the product is above 0 for some corner. back: uses -d instead of d.
+/// Returns a set of corners of t: bit i is set if d.(x - p) is 0, where x is corner i of t and p a
+/// corner of the feature of t. Returns 8 if the product is above 0 for some corner. back: uses -d
+/// instead of d.
 unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
   constexpr unsigned kBeyond = 8;
   const unsigned own = corners_of(feature);
@@ -79,7 +81,7 @@ unsigned touching(const Corners& t, const Feature& feature, const Vector& d, boo
 }
 
 /// Finds the first pair of features that has points as near as `least`. The features may use only
-/// the corners in_a of a and in_b of b. False: there is no such pair.
+/// the corners in_a of a and in_b of b. Returns false if there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
                    Answer& answer) {
   for (const Feature& f : kFeatures) {
@@ -99,7 +101,7 @@ bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found
 
 using Boxes = std::array<Box, 7>;
 
-/// The boxes of the features of a triangle, in their order.
+/// Returns the boxes of the features of a triangle, in the order of kFeatures.
 Boxes boxes_of(const std::array<Vec3, 3>& t) {
   Boxes out;
   for (std::size_t i = 0; i < kFeatures.size(); ++i) {
@@ -111,13 +113,13 @@ Boxes boxes_of(const std::array<Vec3, 3>& t) {
   return out;
 }
 
-/// True only if the boxes are farther apart along an axis than `most`. Rounding is monotone, so if
-/// a rounded difference is above `most`, so is the exact one.
+/// True only if the boxes are more than `most` apart along an axis. Rounding is monotone: if a
+/// rounded difference is above `most`, so is the exact difference.
 bool farther(const Box& a, const Box& b, double most) {
   return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
 }
 
-/// Tries all pairs of features in order; returns the first with the least distance.
+/// Tries all pairs of features in order. Returns the first pair with the least distance.
 Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   // An upper bound of the distance.
   const double most =
@@ -142,7 +144,7 @@ Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array
   return best;
 }
 
-/// True iff the guessed features have closest points; then `answer` is the answer.
+/// True iff the guessed features have closest points. Then writes the final answer to `answer`.
 bool proved(const Scaled& pair, const closest::Guess& guess, Answer& answer) {
   answer.of_a = guess.of_a;
   answer.of_b = guess.of_b;
@@ -168,7 +170,7 @@ SquaredDistance squared(const Scaled& pair, const Found<Integer>& found) {
       SquaredDistance::Value{found.num, found.den, 2L * pair.exponent}));
 }
 
-/// Whether m times 2^exponent is a double.
+/// True if m times 2^exponent is a double.
 bool is_double(const Integer& m, long exponent) {
   if (m == 0) return true;
   const long first = bits_of(m) + exponent;
@@ -215,8 +217,8 @@ SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<
 
 struct PlanesBetween::Planes {
   Vector direction;
-  std::array<Vec3, 2> on;  // a corner of a on the one plane, a corner of b on the other
-  long exponent = 0;       // reach and start are multiplied by 2^exponent, so they are finite
+  std::array<Vec3, 2> on;  // a corner of a on the first plane, a corner of b on the second plane
+  long exponent = 0;       // reach and start are scaled by 2^exponent to be finite
 };
 
 PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
@@ -225,14 +227,15 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
   if (answer.found.num == 0) throw std::logic_error("PlanesBetween: the triangles meet");
   auto planes = std::make_shared<Planes>();
   planes->direction = answer.found.direction;
-  // The direction is perpendicular to the features, so any of their corners is on its plane.
+  // The direction is perpendicular to each feature, so any corner of a feature is on its plane.
   planes->on = {a[answer.of_a.index], b[answer.of_b.index]};
   planes->exponent = -most_bits(planes->direction) - 4;
   planes_ = std::move(planes);
 }
 
-// Reach (side 0) or start. The place of a corner is the scalar product of the direction with the
-// corner minus a point of the plane, in integers, rounded outward: reach up, start down.
+// Returns reach (side 0) or start (side 1). The place of a corner is the scalar product of the
+// direction with the corner minus a point of the plane, in integers. It is then rounded: reach up,
+// start down.
 double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
   const Vec3& origin = planes_->on[side];
   double out = 0;

@@ -1,17 +1,17 @@
 // Decides whether two triangles that intersect penetrate or merely touch.
 //
 // The lectures on CULLIDE and S-CULLIDE distinguish *penetrating* contacts, where the surfaces pass
-// through each other, from *touching* ones, which S-CULLIDE ignores. The exact definition here: two
-// triangles penetrate iff their relative interiors meet and they do not lie in one plane. All other
-// triangles that intersect touch. In other words, A and B penetrate iff 0 is an interior point of
-// A - B: iff no translation shorter than some length separates them. They touch iff arbitrarily
-// short translations separate them (away from a plane between them, or off their common plane).
+// through each other, from *touching* contacts, which S-CULLIDE ignores. The exact definition here:
+// two triangles penetrate iff their relative interiors meet and they do not lie in one plane. All
+// other triangles that intersect touch. In other words, A and B penetrate iff 0 is an interior
+// point of A - B. Then only translations above some length separate A and B. Triangles that touch
+// are separated by arbitrarily short translations.
 //
-// Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
-// degenerate triangle is the segment or the point that it is. The relative interior of a triangle
-// is the triangle without its edges; of a segment, the segment without its ends; of a point, the
-// point. Two segments that meet lie in one plane, so they touch; so do a point and whatever it
-// meets. Every decision is the sign of a determinant, evaluated exactly.
+// Semantics and preconditions as in verify/exact.h: any finite doubles; a degenerate triangle is
+// the segment or the point that it is. The relative interior of a triangle is the triangle without
+// its edges. That of a segment is the segment without its ends. That of a point is the point. Two
+// segments that meet lie in one plane, so they touch. A point touches whatever it meets. Every
+// decision is the sign of a determinant, evaluated exactly.
 #pragma once
 
 #include <array>
@@ -26,9 +26,9 @@
 
 namespace farcull {
 
-/// Whether two triangles penetrate. False for triangles that share no point. Symmetric; the order
+/// True if two triangles penetrate. False for triangles that share no point. Symmetric; the order
 /// of corners does not matter. Neighbours are treated as any other triangles: if they meet only in
-/// what they share, they touch.
+/// their shared part, they touch.
 bool penetrate(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 struct ContactCounts {
@@ -38,9 +38,9 @@ struct ContactCounts {
   bool operator==(const ContactCounts&) const = default;
 };
 
-/// Counts the contacts of pairs that intersect, each pair as often as it is given; 0 threads count
-/// as 1, and their number changes no answer. Throws std::logic_error if a pair names a triangle
-/// that the scene does not have or one triangle twice.
+/// Counts the contacts of pairs that intersect, each pair as often as it is given. 0 threads count
+/// as 1; the number of threads changes no answer. Throws std::logic_error if a pair names one
+/// triangle twice, or a triangle that the scene does not have.
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
                              unsigned threads = std::thread::hardware_concurrency());
 
@@ -54,12 +54,12 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
 
 enum class ContactKind : std::uint8_t {
   apart,         // no point in common: a pair that collides only by a clearance
-  equal,         // the same set of points
+  equal,         // A and B are the same set of points
   touch_vertex,  // one point in common, which is a corner of A or of B
   touch_edge,    // one point in common, which is on an edge of A and on an edge of B
   coplanar,      // in one plane, and more than one point in common
-  crossing,      // a point in common that is on no edge of A and on no edge of B; a segment crosses
-                 // a triangle where it goes through the triangle's inside
+  crossing,      // a point in common that is on no edge of A and on no edge of B;
+                 // a segment crosses a triangle if it passes through the triangle's inside
   touch_face,    // a segment in common that is on an edge of A or of B
 };
 
@@ -68,40 +68,42 @@ inline constexpr std::array kContactKinds = {ContactKind::apart,        ContactK
                                              ContactKind::coplanar,     ContactKind::crossing,
                                              ContactKind::touch_face};
 
-/// "touch-vertex" and so on, as in the labels of a suite.
+/// Returns the kind's label in a suite, such as "touch-vertex".
 std::string_view name_of(ContactKind kind);
 /// The inverse of name_of(); empty if no kind has this name.
 std::optional<ContactKind> parse_contact_kind(std::string_view name);
 
-/// The kind, and the points in common. These are a convex set.
+/// The kind, and the points in common, which are a convex set.
 struct ContactShape {
   ContactKind kind = ContactKind::apart;
-  int dimension = -1;  // of the common points: 0 a point, 1 a segment, 2 a polygon; -1 none
-  /// World units. Dimension 1: the ends of the segment, the lexicographically lower one first, each
-  /// coordinate rounded once to the nearest double; 0: the point, twice; else zeros.
+  int dimension = -1;  // of this set: 0 a point, 1 a segment, 2 a polygon; -1 if it is empty
+  /// World units. Dimension 1: the ends of the segment, the lexicographically lower end first, each
+  /// coordinate rounded once to the nearest double. Dimension 0: the point, twice. Otherwise zeros.
   std::array<Vec3, 2> ends = {Vec3::Zero(), Vec3::Zero()};
   bool operator==(const ContactShape&) const = default;
 };
 
-/// The exact kind. Symmetric; the order of corners does not matter.
+/// Returns the exact kind. Symmetric; the order of corners does not matter.
 ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The exact kind and common points; only `ends` are rounded. Symmetric; the order of corners does
-/// not matter.
+/// Returns the exact kind and the common points; only `ends` are rounded. Symmetric; the order of
+/// corners does not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The corners of the common polygon in order around it, each coordinate rounded once to the
-/// nearest double; empty unless the points in common have dimension 2. The lexicographically lowest
-/// corner comes first, and its lower neighbour second. The exact corners are compared; several of
-/// them may be rounded to the same doubles. Symmetric; the order of corners does not matter.
+/// Returns the corners of the common polygon in order around it, each coordinate rounded once to
+/// the nearest double. Empty unless the points in common have dimension 2. The lexicographically
+/// lowest corner comes first; the lower one of its two neighbours comes second. The exact corners
+/// are compared; different corners may be rounded to the same doubles. Symmetric; the order of the
+/// triangles' corners does not matter.
 std::vector<Vec3> contact_polygon(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.
-/// Throws std::logic_error if a pair names a triangle that the scene does not have.
+/// Returns the kind of each pair, in the order given. 0 threads count as 1; the number of threads
+/// changes no answer. Throws std::logic_error if a pair names a triangle that the scene does not
+/// have.
 std::vector<ContactKind> contact_kinds(const Scene& scene, std::span<const TrianglePair> pairs,
                                        unsigned threads = std::thread::hardware_concurrency());
 
-/// The kind and the common points of each pair, as contact_kinds().
+/// Like contact_kinds(), but returns the common points as well.
 std::vector<ContactShape> contact_shapes(const Scene& scene, std::span<const TrianglePair> pairs,
                                          unsigned threads = std::thread::hardware_concurrency());
 

@@ -1,6 +1,7 @@
-// Finds how two triangles meet if one of them is a segment or a point: cuts this one by the
-// half-spaces that bound the other. All numbers are integers, and the three coordinates of a point
-// have one denominator, so only the answer is rounded. Also answers for lists of pairs.
+// Finds how two triangles meet if one of them is a segment or a point: cuts the segment or point by
+// the half-spaces that bound the other triangle. All numbers are integers. The three coordinates of
+// a point have one denominator. So only the answer is rounded. This file also answers for lists of
+// pairs.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -30,7 +31,7 @@ struct Point {
   mpz_class w = 1;
 };
 
-/// The sign of p - q in the lexicographic order.
+/// Returns the sign of p - q in the lexicographic order.
 int compare(const Point& p, const Point& q) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w); sign != 0) return sign;
@@ -38,7 +39,7 @@ int compare(const Point& p, const Point& q) {
   return 0;
 }
 
-/// The plane of the points p with normal . p = offset, or the half-space normal . p >= offset.
+/// A plane (the points p with normal . p = offset) or a half-space (normal . p >= offset).
 struct Bound {
   Integers normal;
   mpz_class offset;
@@ -46,7 +47,7 @@ struct Bound {
 
   Bound(const Integers& n, const Integers& at, bool is_plane)
       : normal(n), offset(dot(n, at)), plane(is_plane) {}
-  /// normal . p - offset, times p.w.
+  /// Returns (normal . p - offset) times p.w.
   mpz_class value(const Point& p) const { return dot(normal, p.x) - offset * p.w; }
 };
 
@@ -85,7 +86,7 @@ struct Hull {
   bool is_corner(const Point& p) const {
     return std::ranges::any_of(corners, [&](const Integers& x) { return compare(p, {x}) == 0; });
   }
-  /// Whether a point of the hull is on an edge. A segment is all edge.
+  /// True if a point of the hull is on an edge. Every point of a segment is.
   bool on_edge(const Point& p) const {
     return corners.size() < 3 || std::ranges::any_of(bounds, [&](const Bound& bound) {
              return !bound.plane && sgn(bound.value(p)) == 0;
@@ -100,9 +101,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to the part with sign * value >= 0; false if nothing is left. bound.value() is
-/// linear in (x, w), so it is 0 at the new end: the sum of both ends, each times the magnitude of
-/// the other end's value.
+/// Cuts a segment to the part with sign * value >= 0. Returns false if nothing is left.
+/// bound.value() is linear in (x, w). So it is 0 at the new end, which is the sum of both old ends,
+/// each times the magnitude of the other end's value.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;
@@ -115,7 +116,7 @@ bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   return true;
 }
 
-/// Calls answer(corners of a, corners of b) for each pair, on several threads; returns the results.
+/// Calls answer(corners of a, corners of b) for each pair, on several threads. Returns the answers.
 template <class Answer>
 auto answers(const Scene& scene, std::span<const TrianglePair> pairs, unsigned threads,
              const Answer& answer) {
@@ -148,7 +149,8 @@ ContactKind contact_kind(const Corners& a, const Corners& b) {
 }
 
 bool penetrate(const Corners& a, const Corners& b) {
-  // Relative interiors of triangles in different planes meet iff a common point is on no edge.
+  // Relative interiors of triangles in different planes meet iff a common point is on no edge of
+  // either triangle.
   return contact_kind(a, b) == ContactKind::crossing;
 }
 

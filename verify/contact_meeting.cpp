@@ -1,7 +1,7 @@
-// Finds how two triangles meet by signs of determinants of their corners, after the test of Guigue,
-// Devillers: Fast and robust triangle-triangle overlap test using orientation predicates (2003). No
-// point is constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h; CGAL
-// is used only for signs of determinants of input points, which Epick decides exactly
+// Finds how two triangles meet by signs of determinants of their corners (Guigue, Devillers: Fast
+// and robust triangle-triangle overlap test using orientation predicates, 2003). No point is
+// constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h. CGAL decides
+// the other signs, which are of determinants of input points. For these, its kernel Epick is exact
 // (verify/exact.cpp says why).
 #include "verify/contact_meeting.h"
 
@@ -19,15 +19,15 @@ using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Exact signs of determinants of the corners of two triangles. Numbers 0 to 2 are the corners of
-/// a, 3 to 5 those of b. Doubles decide most signs. If each term of a determinant has a factor 0,
-/// as for faces of boxes, the determinant is 0. CGAL decides the rest.
+/// a, 3 to 5 the corners of b. Doubles decide most signs. A determinant is 0 if each of its terms
+/// has a factor 0, as for faces of boxes. CGAL decides the rest.
 class Signs {
  public:
   Signs(const Corners& a, const Corners& b) : a_(a), b_(b) {}
 
   const Vec3& corner(int k) const { return k < 3 ? a_[k] : b_[k - 3]; }
 
-  /// The sign of det(q - p, r - p, s - p).
+  /// Returns the sign of det(q - p, r - p, s - p).
   int side(int p, int q, int r, int s) const {
     const auto e = from(p, q), f = from(p, r), w = from(p, s);
     const int sign = filters::side_of<FilterBounds>(filters::normal_of(e, f), w);
@@ -41,7 +41,7 @@ class Signs {
     return CGAL::orientation(point(p), point(q), point(r), point(s));
   }
 
-  /// The sign of the component of (q - p) x (r - p) along an axis.
+  /// Returns the sign of the component of (q - p) x (r - p) along an axis.
   int turn(int axis, int p, int q, int r) const {
     const Vec3 e = corner(q) - corner(p), f = corner(r) - corner(p);
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -55,8 +55,8 @@ class Signs {
     return CGAL::orientation(point(p, u, v), point(q, u, v), point(r, u, v));
   }
 
-  /// The first axis along which the normal of a triangle is not 0; empty if the triangle is a
-  /// segment or a point. first: the number of the triangle's first corner.
+  /// Returns the first axis along which the normal of a triangle is not 0; none if the triangle is
+  /// a segment or a point. first: the number of the triangle's first corner.
   std::optional<int> axis_of(int first) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (turn(axis, first, first + 1, first + 2) != 0) return axis;
@@ -64,8 +64,8 @@ class Signs {
     return std::nullopt;
   }
 
-  /// Whether corner k lies in the closed triangle whose first corner is `first`. Precondition: the
-  /// corner lies in the triangle's plane, whose normal is not 0 along the axis.
+  /// True if corner k lies in the closed triangle whose first corner is `first`. Preconditions: the
+  /// corner lies in the triangle's plane; the plane's normal is not 0 along the axis.
   bool holds(int first, int axis, int k) const {
     int least = 0, most = 0;
     for (int i = 0; i < 3; ++i) {
@@ -85,12 +85,12 @@ class Signs {
   const Corners& b_;
 };
 
-/// The meeting of two triangles in one plane. Each corner of their common part is a corner of one
-/// triangle, or lies inside an edge of each; in the second case the common part is a polygon. If it
-/// is a segment, its two ends are the only such corners.
+/// Returns the meeting of two triangles in one plane. Each corner of their common part is a corner
+/// of a triangle or a crossing of two edges inside both. If there is such a crossing, the common
+/// part is a polygon. If the common part is a segment, its two ends are its only corners.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
-  int turns[2][3][3];  // [t][i][k]: of edge i of triangle t and corner k of the other
+  int turns[2][3][3];  // [t][i][k]: turn from edge i of triangle t to corner k of the other
   for (int t = 0; t < 2; ++t) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k)
@@ -134,38 +134,39 @@ Meeting meeting_in_plane(const Signs& signs, int axis) {
 }  // namespace
 
 // If the planes of the triangles differ, let L be their common line. A triangle meets L in nothing,
-// in one corner, or in a segment. For a segment, one corner is alone on its side of the other's
-// plane, and the two edges from this corner meet L at the ends of the segment; an end may be a
-// corner.
+// in one corner, or in a segment. In the third case, one corner is alone on its side of the other
+// triangle's plane. The two edges from this corner meet L at the ends of the segment. An end may be
+// a corner.
 //
-// If both triangles meet L in a segment, let p1 and p2 be the lone corners and q and r the others,
-// ordered so that p1 is on the positive side of (p2, q2, r2) and p2 on that of (p1, q1, r1). L
-// meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Affine maps that keep orientations make L
-// the x axis, the planes z = 0 and y = 0, p1 = (a, y1, 0) and p2 = (b, 0, z2). Let k = y1 z2. Since
-// q1 lies on the ray from p1 through u, at or behind u, and likewise for the other edges:
+// If both triangles meet L in a segment, let p1 and p2 be the lone corners. Let q and r be the
+// other corners, ordered so that p1 is on the positive side of (p2, q2, r2) and p2 is on the
+// positive side of (p1, q1, r1). L meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Affine
+// maps that keep orientations make L the x axis, the planes z = 0 and y = 0, p1 = (a, y1, 0) and p2
+// = (b, 0, z2). Let k = y1 z2. q1 lies on the ray from p1 through u, at u or behind u; the other
+// edges are likewise. So
 //   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
-//   orientation(p1, r1, r2, p2) has that of orientation(p1, v, t, p2) = k (t - v),
+//   orientation(p1, r1, r2, p2) has the sign of orientation(p1, v, t, p2) = k (t - v),
 //   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
 // Let k > 0; for k < 0 all inequalities are reversed, with the same result. Then u < v and t < s.
 // The segments have more than a point in common iff u < s and t < v: iff the first two orientations
-// are negative. They have one point in common iff u = s or t = v: iff one of these is 0.
+// are negative. They have one point in common iff u = s or t = v: iff one of these orientations is
+// 0.
 //
-// One end of a common segment is the larger one of u and t, the other end the smaller one of v and
-// s. orientation(p1, q1, p2, r2) has the sign of -k (t - u): if it is positive, the one end is u,
-// else t. orientation(p1, r1, p2, q2) has the sign of -k (s - v): if it is positive, the other end
-// is s, else v.
+// One end of a common segment is max(u, t), the other end is min(v, s). orientation(p1, q1, p2, r2)
+// has the sign of -k (t - u): if it is positive, the first end is u, otherwise t. orientation(p1,
+// r1, p2, q2) has the sign of -k (s - v): if it is positive, the second end is s, otherwise v.
 std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool places) {
   const Signs signs(a, b);
   const std::optional<int> axis_a = signs.axis_of(0), axis_b = signs.axis_of(3);
   if (!axis_a || !axis_b) return std::nullopt;
-  std::array<std::array<int, 3>, 2> side{};  // of the corners of a, and of those of b
+  std::array<std::array<int, 3>, 2> side{};  // of the corners of a, then of the corners of b
   for (const int t : {1, 0}) {
     const int plane = t == 1 ? 0 : 3;
     for (int k = 0; k < 3; ++k) side[t][k] = signs.side(plane, plane + 1, plane + 2, 3 - plane + k);
     if (side[t][0] != 0 && side[t][0] == side[t][1] && side[t][1] == side[t][2]) return Meeting{};
   }
   if (side[0] == std::array<int, 3>{}) return meeting_in_plane(signs, *axis_a);
-  std::array<std::array<int, 3>, 2> order{};  // of the corners, the one that is alone first
+  std::array<std::array<int, 3>, 2> order{};  // the corners, beginning with the lone corner
   for (int t = 0; t < 2; ++t) {
     int alone = -1, on = 0;
     for (int k = 0; k < 3; ++k) {
@@ -191,12 +192,12 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
   const int first = signs.side(p1, q1, 3 + p2, 3 + q2);
   const int second = signs.side(p1, r1, 3 + r2, 3 + p2);
   if (first > 0 || second > 0) return Meeting{};
-  // Where the edge of triangle t from its lone corner to corner `to` meets the other's plane.
+  // Returns where the edge of triangle t from its lone corner to corner `to` meets the other plane.
   const auto place = [&](int t, int to) -> Place {
     if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
     return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
   };
-  // For two places of one point: returns the one that is a corner, if any.
+  // x and y are places of one point. Returns the place that is a corner, if there is one.
   const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
   const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {

@@ -1,6 +1,6 @@
-// Computes the points that two triangles share, rounded to the nearest doubles. Numbers with about
-// 106 bits and bounds of their errors decide most roundings (verify/wide.h); integers decide the
-// rest. Signs of determinants have found which points these are (verify/contact_meeting.cpp).
+// Computes the points that two triangles share, rounded to the nearest doubles. Most roundings are
+// decided by numbers with about 106 bits and bounds of their errors (verify/wide.h). Integers
+// decide the other roundings. verify/contact_meeting.cpp finds which points to compute.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,8 +24,8 @@ using closest::Vector;
 template <class N>
 using SixCorners = std::array<Vector<N>, 6>;
 
-/// A normal of the plane of three corners; or, if an axis is given, of the plane along the axis
-/// through the first two corners.
+/// Returns a normal of the plane of three corners. If an axis is given, the plane is along this
+/// axis and through the first two corners.
 template <class N>
 Vector<N> normal_of(const SixCorners<N>& corners, const std::array<int, 3>& of, int axis = -1) {
   Vector<N> second = {N(0), N(0), N(0)};
@@ -44,9 +44,9 @@ struct Quotient {
   N w;
 };
 
-/// The point of a place: (q s - p t) / (s - t). p and q are the ends of the edge; s and t, which
-/// differ in sign, are the products of the plane's normal with p and q relative to a point of the
-/// plane.
+/// Returns the point of a place: (q s - p t) / (s - t). p and q are the ends of the edge. s and t,
+/// which differ in sign, are the products of the plane's normal with p - origin and q - origin; the
+/// origin is in the plane.
 template <class N>
 Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
   const Vector<N>&p = corners[place.from], &q = corners[place.to];
@@ -60,8 +60,8 @@ Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
   return out;
 }
 
-// Both kinds of arithmetic find a point at a place, round it, and compare two points. An empty
-// answer means that rounding leaves a doubt.
+// InWideNumbers and InIntegers have the same functions: at() finds the point at a place, rounded()
+// rounds it, compare() compares two points. An empty answer means that rounding leaves a doubt.
 
 class InWideNumbers {
  public:
@@ -89,7 +89,7 @@ class InWideNumbers {
       const double fixed = corners_[i][k].hi;
       if (p[k].hi == q[k].hi) {  // the edge does not change this coordinate
         out[k] = p[k];
-      } else if (is(j, fixed) && is(l, fixed)) {  // the whole other triangle or line has it
+      } else if (is(j, fixed) && is(l, fixed)) {  // all of `other` has this coordinate
         out[k] = fixed;
       } else {
         if (!fits_) return std::nullopt;
@@ -106,7 +106,8 @@ class InWideNumbers {
     return Vec3(*x, *y, *z);
   }
 
-  /// The sign of p - q in the lexicographic order. Precondition: both can be rounded.
+  /// Returns the sign of p - q in the lexicographic order. Precondition: rounded() has answers for
+  /// p and q.
   std::optional<int> compare(const Point& p, const Point& q) const {
     for (int k = 0; k < 3; ++k) {
       // Rounding is monotone, so different doubles decide.
@@ -120,7 +121,7 @@ class InWideNumbers {
   }
 
  private:
-  /// True only if coordinate k is the same all along the common line of both planes.
+  /// True only if coordinate k is constant along the common line of both planes.
   bool is_constant(int k) const {
     if (!planes_differ_ || !fits_) return false;
     return cross(normal_of(corners_, {0, 1, 2}), normal_of(corners_, {3, 4, 5}))[k].is_zero();
@@ -162,7 +163,7 @@ class InIntegers {
   int exponent_ = 0;
 };
 
-/// The ends of a common segment, the lower one first; of a common point, the point twice.
+/// Returns the ends of a common segment, the lower end first; or a common point, twice.
 template <class Arithmetic>
 std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const auto p = arithmetic.at(meeting.places[0]),
@@ -176,8 +177,8 @@ std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const M
   return *sign < 0 ? std::array{*first, *second} : std::array{*second, *first};
 }
 
-/// The corners of a polygon in the order of contact_polygon(). Each of its sides is on the line of
-/// an edge, so two corners are neighbours iff they are on one of these lines.
+/// Returns the corners of a polygon in the order of contact_polygon(). Each side of the polygon is
+/// on the line of an edge. So two corners are neighbours iff both are on one of these lines.
 template <class Arithmetic>
 std::optional<std::vector<Vec3>> polygon_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const int count = meeting.count;

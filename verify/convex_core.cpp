@@ -1,8 +1,8 @@
-// A core grows around a seed, within a box. Triangles cut it in the order of their distance from
-// the seed, by their own planes or by planes across the shortest way from the seed (Deits and
-// Tedrake, Computing Large Convex Regions of Obstacle-Free Space through Semidefinite Programming,
-// 2015, cut so around ellipsoids). For a solid with few flat faces the cores are its largest boxes,
-// wedges and the like.
+// A core grows around a seed, within a box. Triangles cut the core in the order of their distance
+// from the seed. A cut is made along the triangle's own plane, or along a plane across the shortest
+// way from the seed to the triangle (Deits and Tedrake, Computing Large Convex Regions of
+// Obstacle-Free Space through Semidefinite Programming, 2015, cut so around ellipsoids). For a
+// solid with few flat faces the cores are its largest boxes, wedges and the like.
 #include "verify/convex_core.h"
 
 #include <Eigen/Geometry>
@@ -22,10 +22,10 @@ using Corners = ClosedObject::Corners;
 using separation::kU;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostCuts = 64;  // largest number of planes of a core
+constexpr std::size_t kMostCuts = 64;  // a core has at most this many planes
 
-/// The point of a triangle that is nearest to p, in plain doubles (Ericson, Real-Time Collision
-/// Detection, 2005, section 5.1.5).
+/// Returns the point of a triangle that is nearest to p, in plain doubles (Ericson, Real-Time
+/// Collision Detection, 2005, section 5.1.5).
 Vec3 nearest_on(const Corners& t, const Vec3& p) {
   const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -53,7 +53,7 @@ struct HalfSpace {
 };
 
 /// True only if normal . (p - seed) > most for all p of t. A product of differences has 5
-/// roundings, relative to the magnitudes, and so has `most`; 16 u covers both.
+/// roundings, relative to the magnitudes. `most` has as many. 16 u covers all of them.
 bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
   double least = kInf, magnitude = size;
   for (const Vec3& v : t) {
@@ -64,8 +64,9 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
   return least - most > 16 * kU * normal.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
-/// The proof at the top of the header, for the hull of the points. near: all triangles that may
-/// meet the hull. planes: their normals are tried first, then that of the triangle.
+/// True only if the hull of the points is proved to be a core, as the top of the header says. near:
+/// all triangles that may meet the hull. planes: their normals are tried before the triangle's
+/// normal.
 bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
@@ -90,7 +91,7 @@ bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const 
   return solid.has(points.front());
 }
 
-/// The part of a triangle that is in all of the half spaces, relative to the seed.
+/// Returns the part of a triangle that is in all of the half spaces, relative to the seed.
 std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes) {
   std::vector<Vec3> polygon = {t[0] - seed, t[1] - seed, t[2] - seed}, next;
   for (const auto& [normal, reach] : planes) {
@@ -106,7 +107,7 @@ std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const Ha
   return polygon;
 }
 
-/// The sides of a box, moved inward, relative to the seed.
+/// Returns the sides of a box, moved inward, as half spaces relative to the seed.
 std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward) {
   std::vector<HalfSpace> out;
   for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +117,7 @@ std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward)
   return out;
 }
 
-/// The corners of the common part of the half spaces, relative to the seed.
+/// Returns the corners of the common part of the half spaces, relative to the seed.
 std::vector<Vec3> corners_of(std::span<const HalfSpace> planes, double size) {
   std::vector<Vec3> out;
   const std::size_t count = planes.size();
@@ -152,8 +153,8 @@ struct Grown {
   }
 };
 
-/// The core around a seed. Each plane is pulled towards the seed by the part `pull` of its
-/// distance, so that one plane cuts off many triangles of a curved surface. near: all triangles
+/// Returns the core around a seed. Each plane is moved towards the seed by the fraction `pull` of
+/// its distance, so that one plane cuts off many triangles of a curved surface. near: all triangles
 /// that meet the region, the nearest to the seed first.
 std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>& near,
                           const Box& region, const Vec3& seed, double pull) {
@@ -188,11 +189,11 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
   return out;
 }
 
-/// Whether a plane across the direction has all corners of a, moved, on one side and all of b on
-/// the other. A corner that is moved and projected has 6 roundings, relative to the magnitude. Far
-/// from the origin, corners are taken relative to a corner of the box of both. Along an axis on
-/// which no coordinate is more than twice another, these differences are exact (Sterbenz,
-/// Floating-Point Computation, 1974).
+/// True only if a plane across t has all corners of a, moved by t, on one side and all corners of b
+/// on the other side. A corner that is moved and projected has 6 roundings, relative to the
+/// magnitude. Far from the origin, corners are taken relative to a corner of the common box of a
+/// and b. These differences are exact along an axis on which no coordinate is more than twice
+/// another (Sterbenz, Floating-Point Computation, 1974).
 bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   Vec3 origin = Vec3::Zero();
   double magnitude = t.cwiseAbs().maxCoeff();
@@ -210,7 +211,7 @@ bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t
   return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
-/// Whether the surfaces are apart by more than `margin`, if a is moved.
+/// True if the surfaces of b and of a, moved by t, are more than `margin` apart.
 bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
   const auto moved = [&](BoundsTree::Bounds box) {
     for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
@@ -273,7 +274,7 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : corners_) middle += p / double(corners_.size());
-  // A thin object needs more room for rounding.
+  // A thin object needs to be moved more, because of rounding.
   for (const double inward : {1e-12, 1e-9, 1e-6}) {
     convex_.clear();
     for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
@@ -328,7 +329,7 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
                                         std::span<const Vec3> seeds, std::size_t most) {
   if (!solid.convex().empty()) return {solid.convex()};
   constexpr std::array kPulls = {0.0, 0.05, 0.15, 0.3};
-  constexpr double kWork = 1e6;  // triangles that are examined
+  constexpr double kWork = 1e6;  // about this many triangles are examined
   std::vector<Corners> near;
   const BoundsTree& tree = solid.tree();
   const auto meets_region = [&](const BoundsTree::Bounds& box) {
@@ -350,8 +351,9 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
     ++at;
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
-  // Tries points close to the middle of the region's part of a triangle, on both sides of it, at
-  // two small heights. The smaller height is for thin walls.
+  // Each seed here is close to the middle of the region's part of a triangle. For each triangle
+  // there are seeds on both of its sides, at two small heights. The smaller height is for thin
+  // walls.
   const Vec3 middle = 0.5 * (region.lo + region.hi);
   const std::vector<HalfSpace> sides = sides_of(region, middle, 0);
   const std::size_t stride = near.size() / 96 + 1;
@@ -396,11 +398,11 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
   return out;
 }
 
-// If the surfaces are apart, but the insides have a common point, then a point of one surface is
-// inside the other object, and with it the whole connected piece of that surface. So one corner of
+// If the surfaces are apart, but the insides have a common point, then the other object contains a
+// point of one surface, and with it the whole connected piece of this surface. So one corner of
 // each piece decides. A coordinate that is moved in doubles is off by at most 2^-53 of its
-// magnitude. The surfaces are farther apart than two such errors, one of a and one of b, so the
-// rounded corner and the true one lie on the same side.
+// magnitude. The surfaces are farther apart than two such errors, one for a and one for b. So the
+// rounded corner and the exact corner lie on the same side.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   const FloatingPointGuard guard;
   const double magnitude = a.largest() + b.largest() + t.cwiseAbs().maxCoeff();

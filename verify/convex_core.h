@@ -1,9 +1,10 @@
 // Convex sets of points that lie inside a closed object: its *cores*. They give bounds of
 // penetration depths (verify/penetration.h).
 //
-// A core is guessed in plain doubles, then proved. A plane divides each triangle of the object from
-// the core, which bounds of all roundings show; so the surface does not meet the core. One point of
-// the core is inside the object, which is decided exactly; so all of the core is inside.
+// A core is guessed in plain doubles, then proved. For each triangle of the object, a plane divides
+// the triangle from the core; bounds of all roundings prove this. So the surface does not meet the
+// core. One point of the core is inside the object, which is decided exactly. So all of the core is
+// inside.
 #pragma once
 
 #include <array>
@@ -18,13 +19,13 @@
 
 namespace farcull {
 
-/// A closed object with a tree of boxes. It is made once for all pairs of the object.
+/// A closed object with a tree of boxes. One ClosedObject serves all pairs of the object.
 class ClosedObject {
  public:
   using Corners = std::array<Vec3, 3>;
 
-  /// surface: by doubted_surface_of(), not `open`. pieces: one corner of each connected piece of
-  /// the object. Precondition: the object has triangles. The scene has to outlive this.
+  /// surface: the result of doubted_surface_of(); not `open`. pieces: one corner of each connected
+  /// piece of the object. Precondition: the object has triangles. The scene has to outlive this.
   ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
                std::span<const Vec3> pieces);
 
@@ -34,13 +35,14 @@ class ClosedObject {
   const BoundsTree& tree() const { return tree_; }
   const Box& box() const { return box_; }
   double largest() const { return largest_; }  // the largest magnitude of a coordinate
-  /// The whole object as a core: all corners, moved inward a little. Empty if it is not convex.
+  /// The corners of a core that is nearly the whole object: all corners, moved inward a little.
+  /// Empty if the object is not convex.
   const std::vector<Vec3>& convex() const { return convex_; }
   /// True iff the point is strictly inside, decided exactly.
   bool has(const Vec3& point) const;
-  /// True only if the point is certainly outside. Precondition: it is not on the surface.
+  /// True only if the point is certainly outside. Precondition: the point is not on the surface.
   bool has_not(const Vec3& point) const;
-  /// The nearest point of the surface, in plain doubles.
+  /// Returns the nearest point of the surface, in plain doubles.
   Vec3 nearest(const Vec3& point) const;
 
  private:
@@ -54,16 +56,16 @@ class ClosedObject {
   double largest_ = 0;
 };
 
-/// A core is made smaller by this much, relative to the size of its region.
+/// The planes of a core are moved inward by this much, relative to the size of its region.
 inline constexpr double kCoreInward = 1e-10;
 
-/// At most `most` cores of the part of the object in the region; empty if none is found. seeds:
-/// points to grow cores around; the function adds points close to the surface.
+/// Returns at most `most` cores of the part of the object in the region; empty if none is found.
+/// seeds: the points around which cores grow. The function adds seeds close to the surface.
 std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,
                                         std::span<const Vec3> seeds, std::size_t most);
 
-/// True only if the insides of a, moved by the translation, and of b have no point in common. Uses
-/// bounds of all roundings: false if the insides are too near to decide.
+/// True only if the inside of a, moved by the translation, and the inside of b have no common
+/// point. False if the insides are too near to decide, by bounds of all roundings.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
 // decide(): threads take blocks of candidates in turn. A filter in doubles decides most pairs,
-// several at once on lanes; exact arithmetic decides the rest.
+// several pairs at once on lanes. Exact arithmetic decides the other pairs.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -32,8 +32,8 @@ void Collisions::append(const Collisions& next) {
   neighbours_apart += next.neighbours_apart;
 }
 
-// Each class is counted by its own answers, never as the total minus the other classes: a candidate
-// that nobody decided must not count as decided.
+// Each class is counted by its own answers, never as the total minus the other classes. So an
+// undecided candidate never counts as decided.
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers) {
   if (answers.size() != candidates.size())
@@ -59,8 +59,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Bit 3 i + j is set if corner i of a and corner j of b have equal positions. If the indices are
-/// equal, the positions are not compared.
+/// Returns a set of pairs of corners: bit 3 i + j is set if corner i of a and corner j of b have
+/// equal positions. Positions are compared only if the vertex indices differ.
 unsigned equal_corners(const Scene& scene, const TrianglePair& pair, const Corners& a,
                        const Corners& b) {
   const std::array<std::uint32_t, 3>&a_index = scene.triangles[pair.a],
@@ -77,7 +77,8 @@ unsigned equal_corners(const Scene& scene, const TrianglePair& pair, const Corne
   return equal;
 }
 
-/// The answer about neighbours without exact arithmetic; `unknown` if that cannot decide.
+/// Returns the answer about neighbours without exact arithmetic; `unknown` if rounding leaves a
+/// doubt.
 Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   const int i = std::countr_zero(equal) / 3, j = std::countr_zero(equal) % 3;
   const unsigned rest = equal & (equal - 1);
@@ -98,8 +99,8 @@ PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corne
   return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
 }
 
-/// Says whether both triangles of a pair are of one object. Fast if successive pairs mostly have
-/// pair.a in one object.
+/// Says whether both triangles of a pair are of one object. Fast if pair.a is mostly in the same
+/// object as in the pair before.
 class SameObject {
  public:
   explicit SameObject(const Scene& scene) : objects_(scene.objects) {}
@@ -109,7 +110,7 @@ class SameObject {
       const auto after = std::upper_bound(
           objects_.begin(), objects_.end(), pair.a,
           [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-      // The last object that starts at or before a. Empty objects that start there come earlier.
+      // The last object that starts at or before a. Empty objects with the same start come earlier.
       first_ = std::prev(after)->first_triangle;
       end_ = std::uint64_t{first_} + std::prev(after)->triangle_count;
     }
@@ -122,15 +123,16 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// Pairs in a block, at most: enough to pay for the shared counter, few enough to balance threads.
+// At most this many pairs are in a block: enough to pay for the shared counter, few enough to
+// balance threads.
 constexpr std::size_t kBlock = 1024;
 
 /// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.
 ///
 /// The filter of planes never answers about neighbours. It answers only if it has proved that all
-/// corners of a triangle are off the plane of the other one, and a shared corner is in both planes.
-/// So all pairs may go through the filter, and corners are compared only if its answer is unknown.
-/// If there are many neighbours, it is faster to set them aside first.
+/// corners of one triangle are off the plane of the other triangle, but a shared corner is in both
+/// planes. So all pairs may go through the filter. Corners are compared only if the filter's answer
+/// is unknown. If there are many neighbours, it is faster to set them aside first.
 class BlockDecider {
  public:
   BlockDecider(const Scene& scene, const ExactQuestion& question)
@@ -155,8 +157,8 @@ class BlockDecider {
   }
 
  private:
-  /// Marks pairs that share a vertex index as neighbours_unasked, puts all others into others_, and
-  /// returns the number of the others. No branches, which would often be mispredicted.
+  /// Marks pairs that share a vertex index as neighbours_unasked. Puts all other pairs into
+  /// others_, and returns their number. Has no branches, which would often be mispredicted.
   std::size_t set_aside(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -171,7 +173,7 @@ class BlockDecider {
     return others;
   }
 
-  /// Answers about the neighbours; puts all other pairs into others_ and returns their number.
+  /// Answers about the neighbours. Puts all other pairs into others_, and returns their number.
   std::size_t answer_neighbours(std::span<const TrianglePair> pairs,
                                 std::span<PairAnswer> answers) {
     std::size_t others = 0;
@@ -209,9 +211,9 @@ class BlockDecider {
   const Scene& scene_;
   const ExactQuestion& question_;
   SameObject same_object_;
-  bool many_neighbours_ = false;  // in the previous block
+  bool many_neighbours_ = false;  // true if the previous block had many
   std::array<TrianglePair, kBlock> others_;
-  std::array<std::uint16_t, kBlock> where_;  // places of others_ in the block
+  std::array<std::uint16_t, kBlock> where_;  // indices in the block of the pairs in others_
   std::array<Triage, kBlock> triage_;
 };
 
@@ -260,9 +262,9 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   require_clearance("decide_first", question.clearance);
   require_pairs(scene, candidates);
   if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
-  // Each step takes twice as many candidates as the one before, so that threads have enough work if
-  // few collide. The steps do not depend on the number of threads, so neither do `decided` and
-  // `complete`.
+  // Each step takes twice as many candidates as the step before, so that threads have enough work
+  // if few candidates collide. The steps do not depend on the number of threads. So `decided` and
+  // `complete` do not depend on it.
   std::size_t step = 2 * kBlock;
   FirstCollisions out;
   Collisions& all = out.collisions;
@@ -313,7 +315,7 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
   } else {
     answers.assign(candidates.size(), PairAnswer::undecided);
     std::vector<TrianglePair> left;
-    std::vector<std::uint32_t> where;  // indices of `left` in the candidates
+    std::vector<std::uint32_t> where;  // the indices in `candidates` of the pairs in `left`
     std::size_t last = 0;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       const TrianglePair& pair = candidates[k];

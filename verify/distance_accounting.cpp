@@ -1,8 +1,9 @@
-// Each object has a tree of boxes over its triangles. The trees of every two objects that are asked
-// about are joined. Two nodes settle all their pairs at once if their boxes are farther apart than
-// the threshold of these objects, or if all these pairs come after an answer of distance 0 (then
-// only an earlier pair could refute it). The pairs that are left are decided one by one: by two
-// parallel planes in doubles, then in integers (verify/certificate/integer_distance.h).
+// Each object has a tree of boxes over its triangles. For every two objects that are asked about,
+// the two trees are joined. Two nodes settle all their pairs at once in two cases: their boxes are
+// farther apart than the threshold of these objects, or all their pairs come after an answer of
+// distance 0 (only an earlier pair could refute such an answer). The remaining pairs are decided
+// one by one: first by two parallel planes in doubles, then in integers
+// (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
 #include <algorithm>
@@ -22,11 +23,11 @@
 
 namespace farcull {
 
-// What the answers claim. `objects`: an answer claims that no pair of these objects is nearer; a
-// missing answer claims that no pair is within the distance asked for. `nearest`: if an answer is
-// missing, neither object is among the k nearest of the other. So no pair of their triangles is
-// nearer than the kth neighbour of either object; nor as near, if the other object comes before
-// that neighbour. `all`: every pair within the distance is an answer.
+// What the answers claim. `objects`: an answer claims that no pair of its objects is nearer. A
+// missing answer claims that no pair of the objects is within the distance asked for. `nearest`: a
+// missing answer claims that neither object is among the k nearest of the other. So no pair of
+// their triangles is nearer than the kth neighbour of either object. No pair is equally near if the
+// other object comes before that neighbour. `all`: every pair within the distance is an answer.
 
 namespace {
 
@@ -38,7 +39,7 @@ bool has(const Object& object, std::uint32_t triangle) {
 auto objects_of(const ClaimedDistance& answer) { return std::pair(answer.a, answer.b); }
 
 constexpr std::size_t kExamples = 10;
-// Pairs decided at a time, so that a list of all pairs is never stored.
+// At most this many pairs are decided at a time, so that a list of all pairs is never stored.
 constexpr std::size_t kChunk = 1 << 16;
 
 /// Decides the pairs that boxes do not decide, a chunk at a time, and counts them.
@@ -47,8 +48,8 @@ class Undecided {
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// Begins with the pairs of two objects (self: of one object), which have this threshold. answer:
-  /// the answer about these objects, if there is one; empty with `all`.
+  /// The pairs that follow are of two objects (self: of one object), and have this threshold.
+  /// answer: the answer about these objects, if there is one; none for `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
     now_ = std::make_shared<const Asked>(Asked{threshold, self, answer});
   }
@@ -67,7 +68,7 @@ class Undecided {
   }
 
  private:
-  /// A class of pairs: the member that counts it.
+  /// A class of pairs, named by the member that counts the class.
   using Class = std::uint64_t DistanceAccounting::*;
   struct Asked {
     Threshold threshold;
@@ -87,12 +88,13 @@ class Undecided {
       return &DistanceAccounting::farther_by_planes;
     if (pair.asked->self && share_position(s, t)) return &DistanceAccounting::neighbours;
     if (!length) return &DistanceAccounting::nearer;
-    // Pairs before the answer must be farther than the answer, pairs after it at least as far.
+    // A pair before the answer must be farther than the answer. A pair after it must be at least as
+    // far.
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return &DistanceAccounting::farther_by_exact;
-    // No direction shows that the pair is far enough, so its nearest points must show that it is
-    // not.
+    // No direction shows that the pair is far enough. So its nearest points must show that it is
+    // near.
     const auto order = integer_distance(s, t).squared <=> length->squared;
     if (order > 0 || (order == 0 && or_as_far)) {
       throw std::logic_error(
@@ -131,7 +133,7 @@ class Join {
     if (nothing_is_nearer(threshold) && !answers.empty()) first_ = answers.front().pair;
   }
 
-  /// True if no pair can be below the threshold, which is then 0.
+  /// True if the threshold is "below 0", so that no pair can be nearer.
   static bool nothing_is_nearer(const Threshold& threshold) {
     return threshold.length && threshold.length->squared.over == 0 &&
            threshold.bound == Bound::below;
@@ -147,7 +149,7 @@ class Join {
   }
 
  private:
-  /// True if all pairs of triangles numbered `least` or higher come after an answer of distance 0.
+  /// True if all pairs of triangles with indices >= `least` come after an answer of distance 0.
   bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
   bool farther(const BoundsTree::Bounds& a, const BoundsTree::Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&
@@ -215,9 +217,9 @@ class Join {
 
   const BoundsTree& trees_;
   const Threshold& threshold_;
-  std::span<const ClaimedDistance> answers_;  // of these objects, sorted by their pairs
+  std::span<const ClaimedDistance> answers_;  // answers about these objects, sorted by their pairs
   std::vector<bool> met_;                     // which answers the join has met
-  std::optional<TrianglePair> first_;         // the pair of an answer of distance 0
+  std::optional<TrianglePair> first_;  // the pair of an answer of distance 0, if there is one
   Undecided& undecided_;
   DistanceAccounting& result_;
 };
@@ -228,7 +230,7 @@ bool is_rounded_root(double distance, const Fraction& square) {
   if (!(distance >= 0)) return false;
   mpq_class squared(square.over, square.under);
   squared.canonicalize();
-  // Compares the root, which is not negative, with the middle by squares.
+  // Compares the root with the middle by comparing their squares.
   return integer::is_nearest_double(distance, [&](double next) {
     const mpq_class middle = (integer::rational(distance) + integer::rational(next)) / 2;
     return next < 0 ? 1 : cmp(squared, mpq_class(middle * middle));
@@ -263,7 +265,7 @@ DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistan
 }
 
 void DistanceClaims::find_farthest() {
-  // Per object: its answers, by distance and then by the other object.
+  // Per object: the distances to other objects in its answers, and these objects.
   std::vector<std::vector<std::pair<Fraction, std::uint32_t>>> neighbours(scene_.objects.size());
   for (std::size_t k = 0; k < answers_.size(); ++k) {
     if (!squares_[k]) continue;
@@ -324,7 +326,7 @@ bool DistanceClaims::wrong(std::size_t answer) const {
                           x.a != x.b && squared->over != 0;
   if (x.inside != (has_inside ? insides_.which(x.a, x.b) : InsideClaim::unknown)) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
-  // The answer is wrong if neither object has the other one among its k nearest.
+  // The answer is wrong if neither object has the other object among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {
     return of.answers == question_.k && std::tie(of.squared, of.other) < std::tie(*squared, other);
   };
@@ -350,7 +352,7 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
   DistanceAccounting out;
   out.wrong = claims.wrong(question.threads);
   BoundsTree trees(scene);
-  std::vector<std::uint32_t> roots;  // by object; objects without triangles have none
+  std::vector<std::uint32_t> roots;  // per object; not used for objects without triangles
   for (const Object& object : scene.objects) {
     roots.push_back(static_cast<std::uint32_t>(trees.nodes.size()));
     if (object.triangle_count > 0) trees.add(object.first_triangle, object.triangle_count);

@@ -1,10 +1,10 @@
 // Independent accounting for distances: every pair of triangles is proved to be no nearer than the
 // answer allows.
 //
-// The accounting shares no code with what culled, nor with what computed the answers
-// (verify/closest.h). Its boxes are those of the checker of certificates. Each answer, and each
-// pair that neither boxes nor planes prove far apart, is decided in integers
-// (verify/certificate/integer_distance.h).
+// The accounting shares no code with the culling, nor with verify/closest.h, which computed the
+// answers. Its boxes are those of the checker of certificates. Each answer is decided in integers
+// (verify/certificate/integer_distance.h). So is each pair that neither boxes nor planes prove far
+// apart.
 #pragma once
 
 #include <array>
@@ -23,61 +23,62 @@
 
 namespace farcull {
 
-/// An answer: it claims that `pair` is the first of the nearest pairs of triangles of the objects a
-/// <= b, or (with `all`) one of the pairs within the distance. If a == b, neighbours
+/// An answer about the objects a <= b. It claims that `pair` is the first of the nearest pairs of
+/// their triangles, or, for `all`, that `pair` is within the distance. If a == b, neighbours
 /// (verify/exact.h) are left out.
 struct ClaimedDistance {
-  std::uint32_t a = 0, b = 0;  // objects
+  std::uint32_t a = 0, b = 0;  // indices of the objects
   TrianglePair pair;           // a triangle of a and one of b
   double distance = 0;         // the root of `squared`, rounded to the nearest double
-  std::string squared;         // the square, "numerator/denominator" in lowest terms
-  std::array<Vec3, 2> points;  // two nearest points, of a and of b, each coordinate rounded once
-  std::array<std::uint8_t, 2> features{};     // the points lie on these, numbered as in
+  std::string squared;  // the square of the distance, "numerator/denominator" in lowest terms
+  std::array<Vec3, 2> points;  // nearest points of a and of b, each coordinate rounded once
+  std::array<std::uint8_t, 2> features{};     // features of the points, numbered as in
                                               // verify/certificate/integer_distance.h
   InsideClaim inside = InsideClaim::unknown;  // unknown if the objects meet, or if a == b
 };
 
 /// A question about the distances of a scene.
 struct DistanceQuestion {
-  /// objects: the nearest pair of every two objects, and of each object marked `self`.
-  /// nearest: the nearest pair of each object with each of its k nearest other objects; of objects
-  ///   equally far away, those with the lower index are nearer.
+  /// objects: the nearest pair of every two objects, and the nearest pair within each `self`
+  /// object.
+  /// nearest: the nearest pair of each object with each of its k nearest other objects. If objects
+  /// are equally far away, those with lower indices count as nearer.
   /// all: every pair of triangles within the distance, of different objects or of a `self` object.
   enum class Kind : std::uint8_t { objects, nearest, all };
   Kind kind = Kind::objects;
   std::size_t k = 1;
   /// Pairs farther apart than this are not asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
-  bool inside = false;   // ask whether one of two disjoint objects is inside the other; not `all`
+  bool inside = false;   // asks whether one of two disjoint objects is inside the other; not `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
-/// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
-/// that fits, and is counted when it is decided. A pair is *nearer* if it shows that an answer
-/// should be nearer, or if it should be an answer itself. It is *earlier* if it is as near as the
-/// answer about its objects but comes first, so it should be that answer.
+/// Counts of all pairs of triangles that were asked about. Each pair is in one class: the first
+/// that fits. A pair is *nearer* if it is nearer than its answer, or if it should be an answer
+/// itself. It is *earlier* if it is as near as the answer about its objects but comes first, so it
+/// should be that answer.
 struct DistanceAccounting {
-  std::uint64_t pairs_total = 0;        // by combinatorics
+  std::uint64_t pairs_total = 0;        // computed from the sizes of the objects
   std::uint64_t answers = 0;            // pairs that the answers name
   std::uint64_t objects_meet = 0;       // pairs after an answer of distance 0, or of objects whose
-                                        // kth neighbour is at distance 0: nothing is nearer than 0
-  std::uint64_t farther_by_boxes = 0;   // by the gaps between their boxes
-  std::uint64_t farther_by_planes = 0;  // by two parallel planes between them, far enough apart
-  std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); no answers
-  std::uint64_t farther_by_exact = 0;   // by the squares of distances, in integers
-  std::uint64_t nearer = 0;             // missed
-  std::uint64_t earlier = 0;            // the answer is not the first of the nearest pairs
-  std::vector<TrianglePair> examples;   // the first missed ones
-  /// Answers that are wrong about the distance, nearest points or features of their triangles or
-  /// about `inside` of their objects, or that are beyond `within` or not asked for.
+                                        // kth neighbour is at distance 0
+  std::uint64_t farther_by_boxes = 0;   // proved far enough apart by gaps between boxes
+  std::uint64_t farther_by_planes = 0;  // proved far enough apart by two parallel planes
+  std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); never answers
+  std::uint64_t farther_by_exact = 0;   // proved far enough apart in integers
+  std::uint64_t nearer = 0;             // missed pairs
+  std::uint64_t earlier = 0;            // pairs that should be answers in place of later pairs
+  std::vector<TrianglePair> examples;   // the first missed pairs
+  /// Number of wrong answers. An answer is wrong if it is not asked for, if its distance is beyond
+  /// `within`, or if its distance, nearest points, features or `inside` are wrong.
   std::uint64_t wrong = 0;
   double ms = 0;
   FARCULL_FIELDS(pairs_total, answers, objects_meet, farther_by_boxes, farther_by_planes,
                  neighbours, farther_by_exact, nearer, earlier, wrong)
-  /// True iff the classes sum to pairs_total, which is computed from the sizes of the objects
-  /// alone.
+  /// True iff the classes sum to pairs_total.
   bool adds_up() const;
-  /// True iff no pair was missed, no answer is wrong, and each is the first of the nearest pairs.
+  /// True iff no pair was missed, no answer is wrong, and each answer is the first of the nearest
+  /// pairs.
   bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }
 };
 
@@ -90,17 +91,16 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
 // ---- what account_distances() has to prove about the pairs of triangles of two objects, derived
 // from question and answers. For distance_accounting.cpp and its tests.
 
-/// Which distances are meant: those below a length, or those up to and including it.
+/// below: distances less than a length. at_most: distances up to and including the length.
 enum class Bound : std::uint8_t { below, at_most };
 
-/// Every pair of triangles whose distance is below `length`, or at most `length`, as `bound` says,
-/// has to be among the answers.
+/// Every pair of triangles whose distance is below `length` (at_most: at most `length`) has to be
+/// among the answers.
 struct Threshold {
-  std::optional<Length> length;  // none: infinite, so all pairs
+  std::optional<Length> length;  // none: the length is infinite
   Bound bound = Bound::below;
 };
-/// Whether the distance is the root of `squared`, rounded to the nearest double (to the even one of
-/// two equally near doubles).
+/// True if the distance is the root of `squared`, rounded to the nearest double, ties to even.
 bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {
@@ -109,14 +109,15 @@ class DistanceClaims {
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// Within this distance every pair of triangles of the objects a <= b has to be an answer.
+  /// Returns a threshold: each pair of triangles of the objects a <= b within it has to be an
+  /// answer.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
-  /// The answers of the objects a <= b.
+  /// Returns the answers about the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
-  /// Whether the question is about the objects a <= b.
+  /// True if the question is about the objects a <= b.
   bool asked(std::uint32_t a, std::uint32_t b) const;
-  /// How many answers are wrong: in themselves, or because the other answers show that neither
-  /// object of the answer has the other one among its k nearest.
+  /// Returns the number of wrong answers. An answer may be wrong in itself, or because other
+  /// answers show that neither of its objects has the other object among its k nearest.
   std::uint64_t wrong(unsigned threads) const;
 
  private:
@@ -132,8 +133,8 @@ class DistanceClaims {
   std::span<const ClaimedDistance> answers_;
   DistanceQuestion question_;
   Threshold within_;
-  std::vector<std::optional<Fraction>> squares_;  // of the answers
-  std::vector<Farthest> farthest_;                // of each object; filled for `nearest` alone
+  std::vector<std::optional<Fraction>> squares_;  // one for each answer
+  std::vector<Farthest> farthest_;  // one for each object; empty unless the question is `nearest`
   IntegerInside insides_;
 };
 

@@ -1,15 +1,15 @@
-// The predicates about two triangles by CGAL. Only this and contact_meeting.cpp include CGAL, which
-// compiles slowly; both include its kernel alone, which is under the LGPL.
+// The predicates about two triangles by CGAL. Only this file and contact_meeting.cpp include CGAL,
+// which compiles slowly. They include only its kernel, which is under the LGPL.
 //
-// Epick decides exactly here, for these reasons, read from the headers of CGAL 5.5.1 (the tests
-// compare it with integer arithmetic):
+// CGAL's kernel Epick decides exactly here, for reasons that were read from the headers of CGAL
+// 5.5.1. The tests compare it with integer arithmetic.
 // - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment asks only
 //   orientation_3 and coplanar_orientation_3 about input points (Guigue, Devillers: Fast and robust
 //   triangle-triangle overlap test using orientation predicates, 2003). Both have preconditions on
-//   degeneracy, hence the sorting into shapes first.
+//   degeneracy, so triangles are first sorted into shapes.
 // - Each other do_intersect (segment/segment constructs supporting lines) is one
-//   Filtered_predicate. It runs the whole function, with its constructions, over intervals and, if
-//   that leaves a doubt, over rationals. Nothing is rounded in between.
+//   Filtered_predicate. It runs the whole function, with its constructions, over intervals. If that
+//   leaves a doubt, it runs the function over rationals. Nothing is rounded in between.
 // - Overflow: static filters do not decide if a difference of coordinates exceeds 1e102 (1e153 for
 //   collinearity) or if products could underflow. Intervals round outward to infinity, and
 //   0 * infinity widens them.
@@ -63,7 +63,8 @@ std::vector<Corners> parts_at(const Corners& t, int corner) {
   return {{v, v, t[(corner + 1) % 3]}, {v, v, t[(corner + 2) % 3]}};
 }
 
-/// The rim of such a part: the points where rays from the corner v leave the part.
+/// Returns the rim of a part from parts_at(): the points where rays from the corner v leave the
+/// part.
 Hull rim_at(const Corners& part, const Vec3& v) {
   std::array<Vec3, 2> others;
   int count = 0;
@@ -77,8 +78,8 @@ Hull rim_at(const Corners& part, const Vec3& v) {
 
 /// Decides about neighbours with one shared position v. Both triangles are unions of convex parts
 /// that contain v. The rim of a part does not contain v, unless the part is v itself. If two parts
-/// have a common point other than v, this point can be moved away from v until it leaves one part.
-/// There it is on the rim of that part, so this rim meets the other part.
+/// have a common point other than v, move this point away from v until it leaves one of the parts.
+/// There it is on the rim of this part, so the rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {
@@ -93,16 +94,17 @@ bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
 }
 
 /// Decides about neighbours that share the edge from p to q. r and s are their third corners, which
-/// may lie anywhere (also at p or q).
+/// may lie anywhere, even at p or q.
 bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const bool flat_a = CGAL::collinear(point(p), point(q), point(r));
   const bool flat_b = CGAL::collinear(point(p), point(q), point(s));
-  if (flat_a != flat_b) return false;  // a proper triangle meets the line of p and q in its edge
+  if (flat_a != flat_b) return false;  // one triangle meets the line of p and q only in the edge
   if (!flat_a) {
     return CGAL::coplanar(point(p), point(q), point(r), point(s)) &&
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
-  // Both are segments on the line of p and q. Do they reach beyond the same end of the edge?
+  // Both triangles are segments on the line of p and q. Do they extend beyond the same end of the
+  // edge?
   const auto ends = std::minmax(p, q, lexicographically_less);
   const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };
   const auto above = [&](const Vec3& x) { return lexicographically_less(ends.second, x); };

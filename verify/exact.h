@@ -1,25 +1,25 @@
-// Exact answers about triangles in double coordinates: the truth that culling is measured against,
-// and the method `exact` (every pair of triangles that counts) that needs no culling.
+// Exact answers about triangles in double coordinates. They are the truth that culling is measured
+// against. The method `exact` gives them for every pair of triangles that counts, without culling.
 //
 // Semantics: a triangle is the closed convex hull of its three corners with the doubles as given,
 // so touching counts, and a degenerate triangle is the segment or the point that it is. Every
 // decision is the sign of a polynomial that is evaluated exactly (filtered, then rational); no
 // rounded construction ever decides.
 //
-// Neighbours are two triangles of one object that share a vertex position (-0.0 equals 0.0). What
-// they share for that reason is no collision: the *shared part* is the shared positions and the
-// segments between any two of them. Neighbours collide iff their intersection is more than that:
-// with one shared position, iff a further point is common; with two, iff the intersection is more
-// than the edge between them; triangles with the same three corners collide unless the corners are
-// collinear.
+// Neighbours are two triangles of one object that share a vertex position (-0.0 equals 0.0). Their
+// *shared part* is the shared positions and the segments between any two of them. The shared part
+// is no collision. Neighbours collide iff their intersection is more than the shared part. With one
+// shared position, they collide iff a further point is common. With two, they collide iff the
+// intersection is more than the edge between the positions. Triangles with the same three corners
+// collide unless the corners are collinear.
 //
-// With a clearance D > 0 two triangles that are not neighbours collide iff their distance is at
-// most D. Neighbours have distance 0: D does not matter to them.
+// With a clearance D > 0, two triangles that are not neighbours collide iff their distance is at
+// most D. D does not matter to neighbours, whose distance is 0.
 //
-// Preconditions everywhere: coordinates finite (any finite double: subnormal, 1e308 and -0.0, which
-// equals 0.0, are fine); scenes satisfy validate(). Functions of two triangles need a thread that
-// rounds to nearest and keeps subnormals (core/base/floating_point.h); functions of a scene see to
-// that.
+// Preconditions everywhere: coordinates are finite (subnormals, 1e308 and -0.0, which equals 0.0,
+// are fine); scenes satisfy validate(). Functions of two triangles need a thread that rounds to
+// nearest and keeps subnormals (core/base/floating_point.h). Functions of a scene set this
+// themselves.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@
 
 namespace farcull {
 
-/// The answer about one candidate, at first `undecided`. neighbours_unasked: the candidate is a
-/// pair of neighbours, and ExactQuestion::neighbours is false.
+/// The answer about one candidate. neighbours_unasked: the candidate is a pair of neighbours, and
+/// ExactQuestion::neighbours is false.
 enum class PairAnswer : std::uint8_t {
   undecided,
   apart,
@@ -45,15 +45,15 @@ enum class PairAnswer : std::uint8_t {
 };
 
 struct Collisions {
-  std::vector<TrianglePair> pairs;            // that collide and are not neighbours
-  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
-  std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
-  std::uint64_t apart = 0;                    // other candidates that do not collide
-  std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
+  std::vector<TrianglePair> pairs;            // colliding pairs that are not neighbours
+  std::vector<TrianglePair> neighbour_pairs;  // colliding pairs of neighbours
+  std::uint64_t neighbours = 0;               // number of candidates that are neighbours
+  std::uint64_t apart = 0;                    // number of other candidates that do not collide
+  std::uint64_t neighbours_apart = 0;         // number of neighbours decided not to collide
 
-  /// pairs and neighbour_pairs together; sorted if both lists are sorted.
+  /// Returns pairs and neighbour_pairs in one list; sorted if both lists are sorted.
   std::vector<TrianglePair> all() const;
-  /// Adds the pairs and counts of candidates that come after these.
+  /// Appends the pairs of later candidates, and adds their counts.
   void append(const Collisions& next);
 };
 
@@ -67,21 +67,21 @@ enum class Shape : std::uint8_t { point, segment, triangle };
 
 Shape shape(const std::array<Vec3, 3>& corners);
 
-/// True iff the closed convex hulls share a point. Symmetric; the order of corners does not matter.
+/// True iff the closed triangles share a point. Symmetric; the order of corners does not matter.
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the distance of the closed convex hulls is at most `clearance` (world units, finite,
-/// >= 0). Compares squared distances exactly; with clearance 0 the same as intersects().
+/// True iff the distance of the closed triangles is at most `clearance` (world units, finite, >=
+/// 0). Compares squared distances exactly. With clearance 0 the same as intersects().
 bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// True iff a corner of a and a corner of b are equal as doubles.
 bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the intersection is more than the shared part (see the top of this file). For triangles
-/// that share no position the same as intersects().
+/// True iff the intersection is more than the shared part (see the top of this file). The same as
+/// intersects() for triangles that share no position.
 bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// How many triangles of the scene are segments or points.
+/// Returns the number of triangles of the scene that are segments or points.
 std::uint64_t degenerate_triangles(const Scene& scene);
 
 struct ExactQuestion {
@@ -90,44 +90,43 @@ struct ExactQuestion {
   bool neighbours = true;  // false: neighbours are counted, not decided
 };
 
-/// The candidates that collide, in the order given, duplicates included. A candidate may be any two
-/// different triangles, also of one object that is not `self`. Every candidate begins undecided,
-/// and each class counts the candidates that were decided to be in it. Throws std::logic_error if a
-/// candidate names a triangle that the scene does not have or one triangle twice, if a candidate
+/// Returns the candidates that collide, in the order given, duplicates included. A candidate may be
+/// any two different triangles, even of one object that is not `self`. Throws std::logic_error if a
+/// candidate names one triangle twice or a triangle that the scene does not have, if a candidate
 /// was left undecided, or if the clearance is negative or not finite.
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 
 struct FirstCollisions {
-  Collisions collisions;      // counts the candidates that were decided
-  std::uint64_t decided = 0;  // how many candidates, from the first one on, were decided
-  bool complete = true;       // all were decided, and not more than the limit collide
+  Collisions collisions;      // its counts are of the decided candidates
+  std::uint64_t decided = 0;  // this many candidates, from the first one on, were decided
+  bool complete = true;       // all candidates were decided, and at most `limit` collide
 };
 
-/// The first `limit` candidates that collide, colliding neighbours included. Decides candidates
-/// block by block and stops when `limit` of them collide; the others stay undecided. Preconditions:
-/// the candidates are sorted, limit > 0. Throws as decide().
+/// Finds the first `limit` candidates that collide, colliding neighbours included. Decides
+/// candidates block by block and stops when `limit` candidates collide; later candidates stay
+/// undecided. Preconditions: the candidates are sorted, limit > 0. Throws as decide() does.
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes the last of `pairs` and `neighbour_pairs` until `limit` pairs are left in all; returns
-/// whether there were more. The counts stay. Precondition: both lists are sorted.
+/// Removes the last pairs of both lists until `limit` pairs are left in all. Returns whether there
+/// were more. The counts stay. Precondition: both lists are sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);
 
 /// decide() for successive frames of a scene. The answer about a pair depends only on the corners
 /// of its triangles, so if neither triangle moved, the answer of the last frame holds.
 class FrameDecider {
  public:
-  /// As farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses the
-  /// answers of the last call if it ended normally, was for the previous frame and asked the same
-  /// question (threads may differ). Precondition: moved.update(scene) began this frame.
+  /// Like farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses
+  /// the stored answers if the last call ended normally, was for the previous frame and had the
+  /// same question (threads may differ). Precondition: moved.update(scene) began this frame.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                     const MovedCorners& moved, const ExactQuestion& question = {});
-  /// Pairs that the last call decided anew.
+  /// Returns the number of pairs that the last call decided anew.
   std::size_t decided() const { return decided_; }
 
  private:
-  std::optional<std::uint64_t> frame_;  // frame of the answers
+  std::optional<std::uint64_t> frame_;  // the frame of answers_; none if they are not valid
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;
@@ -138,18 +137,18 @@ class FrameDecider {
 /// The answers about the pairs that count: two triangles of different objects, or of one object
 /// marked `self`.
 struct ExactResult : Collisions {  // both lists sorted, each pair once
-  std::uint64_t box_pairs = 0;     // pairs that count whose closed boxes overlap, or have no gap
-                                   // above the clearance along any axis, by differences in double
-  std::uint64_t ignored = 0;  // pairs whose boxes overlap likewise, but whose objects are ignored
-  double join_ms = 0;         // boxes and box join, wall clock, without the decisions
-  double predicates_ms = 0;   // decisions (mean of the deciding threads), and sort of the answers
+  std::uint64_t box_pairs = 0;     // pairs that count and have overlapping boxes: no gap
+                                   // along an axis, computed in double, is above the clearance
+  std::uint64_t ignored = 0;       // pairs with overlapping boxes whose objects are ignored
+  double join_ms = 0;              // wall clock of making and joining the boxes
+  double predicates_ms = 0;        // mean time of the deciding threads, plus sorting the answers
 };
 
 /// The method `exact`: a tree of boxes in doubles finds the pairs whose boxes overlap, and decide()
-/// decides them in the threads that find them. Memory O(triangles + colliding pairs): candidates
-/// are not kept. The tree (core/boxes/join.h) uses no view, no error budget and no float. A test
-/// compares its pairs with those of CGAL's join, which shares no code with it. ignored: pairs of
-/// objects that do not count, as in_order() gives them.
+/// decides these pairs in the threads that find them. Memory O(triangles + colliding pairs), since
+/// candidates are not stored. The tree (core/boxes/join.h) uses no view, no error budget and no
+/// float. A test compares its pairs with the pairs of CGAL's join, which shares no code with the
+/// tree. ignored: pairs of objects that do not count, as in_order() gives them.
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});
 

@@ -1,4 +1,4 @@
-// The coordinates of a point are fractions of integers, so each answer is the sign of an integer.
+// The coordinates of a point are quotients of integers, so each answer is the sign of an integer.
 #include "verify/exact_point.h"
 
 #include <gmpxx.h>
@@ -20,8 +20,8 @@ mpq_class coordinate(const ExactPoint& point, int axis) {
   return sum / weights;
 }
 
-// First and last index of the pixels that contain x, in a row of `size` pixels centred on 0; empty
-// (first > last) if no pixel does.
+// Returns the first and last index of the pixels that contain x, in a row of `size` pixels centred
+// on 0; first > last if no pixel does.
 std::pair<int, int> indices(const mpq_class& x, int size) {
   const mpq_class at = x + mpq_class(size) / 2;
   if (at < 0 || at > size) return {0, -1};
@@ -32,7 +32,7 @@ std::pair<int, int> indices(const mpq_class& x, int size) {
   return {std::max(lower, 0), std::min(upper, size - 1)};
 }
 
-// The larger of the two as a double of the same sign: a positive number does not become 0.
+// Returns the larger number as a double of the same sign: a positive number does not become 0.
 double larger(const mpq_class& a, const mpq_class& b) {
   const mpq_class& most = a > b ? a : b;
   const double cut = most.get_d();

@@ -1,6 +1,6 @@
-// A point of a triangle with exact coordinates, for tests of the lemmas: decides which pixels
-// contain its image, and whether two samples bound its depth. Uses integers only (GMP), and neither
-// the budget nor an offset.
+// A point of a triangle with exact coordinates, for tests of the lemmas. Decides which pixels
+// contain the point's image, and whether two samples bound its depth. Uses only integers (GMP), and
+// neither the budget nor an offset.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace farcull {
 
-/// (w0 c0 + w1 c1 + w2 c2) / (w0 + w1 + w2) in pixel space: a point of the closed triangle of the
-/// corners.
+/// A point of the closed triangle with these corners, in pixel space: (w0 c0 + w1 c1 + w2 c2) / (w0
+/// + w1 + w2).
 struct ExactPoint {
   std::array<Vec3, 3> corners;  // px, finite
-  std::array<int, 3> weights;   // >= 0, their sum > 0
+  std::array<int, 3> weights;   // >= 0; the sum is > 0
 };
 
 struct Pixel {
@@ -22,15 +22,15 @@ struct Pixel {
   int y;
 };
 
-/// The pixels (closed squares) of a window of width x height px centred on the origin that contain
-/// the image of the point: none to four.
+/// Returns the pixels (closed squares) that contain the image of the point: none to four. The
+/// window has width x height px and is centred on the origin.
 std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height);
 
-/// entry <= z(point) <= exit, exactly; false if a sample is NaN.
+/// True iff entry <= z(point) <= exit, exactly. False if a sample is not finite.
 bool bounded(const ExactPoint& point, float entry, float exit);
 
-/// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly
-/// and rounded toward 0 to a double. Not positive if bounded(). Precondition: finite samples.
+/// Returns how far z(point) is outside the samples: the larger of entry - z and z - exit, computed
+/// exactly and rounded toward 0 to a double. At most 0 iff bounded(). Precondition: finite samples.
 double beyond(const ExactPoint& point, float entry, float exit);
 /// beyond() for depths of a depth buffer: the larger of entry - D and D - exit, with
 /// D = z(point) * scale + 1/2.

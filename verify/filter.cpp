@@ -1,11 +1,11 @@
-// The filters with the proved bounds. filter_pairs() runs on lanes of doubles: each lane is another
-// pair, and every operation rounds once, so the answers are the same as those of the scalars. The
-// verification has its own few operations on lanes, since it shares no code with the canvas
+// The filters with the proved bounds. filter_pairs() runs on lanes of doubles: each lane has a pair
+// of its own. Every operation rounds once, so the answers are the same as those of the scalars. The
+// operations on lanes are defined here, since verification shares no code with the canvas
 // (core/native) that it checks.
 //
 // Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
 // triangles. The few pairs whose triangles cross each other's planes are gathered again, so that
-// the lanes stay full. Their corners are then in the order for the comparison along the line.
+// the lanes stay full. Then the corners are reordered for the comparison along the line.
 #include "verify/filter.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ HWY_INLINE Truth operator&&(Truth a, Truth b) { return Truth(hn::And(a.mask, b.m
 HWY_INLINE Truth operator||(Truth a, Truth b) { return Truth(hn::Or(a.mask, b.mask)); }
 HWY_INLINE Truth operator!(Truth a) { return Truth(hn::Not(a.mask)); }
 HWY_INLINE bool of_all(Truth a) { return hn::AllTrue(Tag(), a.mask); }
-/// Bit i: the answer of lane i.
+/// Bit i of the result is the answer of lane i.
 HWY_INLINE unsigned bits_of(Truth a) {
   std::uint8_t bits[8] = {};  // StoreMaskBits() needs one byte, and may write 8
   hn::StoreMaskBits(Tag(), a.mask, bits);
@@ -54,8 +54,8 @@ HWY_INLINE Real operator-(Real a, Real b) { return Real(hn::Sub(a.v, b.v)); }
 HWY_INLINE Real operator*(Real a, Real b) { return Real(hn::Mul(a.v, b.v)); }
 HWY_INLINE Truth operator<(Real a, Real b) { return Truth(hn::Lt(a.v, b.v)); }
 HWY_INLINE Truth operator>(Real a, Real b) { return Truth(hn::Gt(a.v, b.v)); }
-// min is b < a ? b : a, and max is a < b ? b : a, as in std::min() and std::max(), NaNs included.
-// On x86 each is one instruction with the operands exchanged.
+// min is b < a ? b : a, and max is a < b ? b : a, as in std::min() and std::max(), even for NaN. On
+// x86 each of them is one instruction with exchanged operands.
 HWY_INLINE Real min(Real a, Real b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
   return Real(hn::Min(b.v, a.v));
@@ -73,8 +73,8 @@ HWY_INLINE Real max(Real a, Real b) {
 HWY_INLINE Real abs(Real a) { return Real(hn::Abs(a.v)); }
 HWY_INLINE Real sqrt(Real a) { return Real(hn::Sqrt(a.v)); }
 
-/// One corner of each of kWide pairs in memory: first x of all of them, then y, then z, each
-/// aligned and `stride` numbers after the one before.
+/// One corner of each of kWide pairs in memory: x of all corners, then y, then z. Each of these
+/// rows is aligned, and begins `stride` numbers after the row before.
 template <int stride>
 struct PointOf {
   const PlainReal* at = nullptr;
@@ -83,14 +83,14 @@ struct PointOf {
   HWY_INLINE Real z() const { return Real(hn::Load(Tag(), at + 2 * stride)); }
 };
 
-constexpr int kBatch = 64;  // pairs: their corners fit into the fastest cache
+constexpr int kBatch = 64;  // so many pairs fit into the fastest cache
 using Point = PointOf<kBatch>;
 
 #define FAR_FILTER HWY_INLINE
 #include "verify/filter_planes.inl"
 #undef FAR_FILTER
 
-/// Coordinates of pairs: row 3 k + axis is of corner k of a, row 9 + 3 k + axis of corner k of b.
+/// Coordinates of pairs: row 3 k + axis is corner k of a, and row 9 + 3 k + axis is corner k of b.
 struct alignas(64) Batch {
   double row[18][kBatch];
 
@@ -105,7 +105,7 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
       for (int axis = 0; axis < 3; ++axis) batch.row[row++][i] = p[axis];
     }
   };
-  bool one = true;  // all pairs have the same a
+  bool one = true;  // true if all pairs have the same a
   for (int i = 0; i < count; ++i) one &= pairs[from + i].a == pairs[from].a;
   if (one) {
     gather_one(pairs[from].a, 0, 0);
@@ -115,7 +115,7 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
   const std::size_t last = pairs.size() - 1;
   for (int i = 0; i < count; ++i) {
     const TrianglePair& pair = pairs[from + i];
-    // First the indices, then the corners that these name.
+    // Prefetches indices far ahead, and corners less far ahead.
     __builtin_prefetch(&scene.triangles[pairs[std::min(from + i + 2 * kAhead, last)].b]);
     prefetch(scene, pairs[std::min(from + i + kAhead, last)].b);
     if (!one) gather_one(pair.a, 0, i);
@@ -123,21 +123,21 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
   }
 }
 
-/// Fills the lanes beyond `count` with the last pair, and returns the end of the filled ones.
+/// Fills the lanes beyond `count` with the last pair. Returns the end of the filled lanes.
 HWY_INLINE int fill_lanes(Batch& batch, int count) {
   const int end = (count + kWide - 1) / kWide * kWide;
   for (auto& row : batch.row) std::fill(row + count, row + end, row[count - 1]);
   return end;
 }
 
-/// Collects pairs whose triangles cross each other's planes, and compares them along the line of
-/// the planes once they fill a batch.
+/// Collects pairs whose triangles cross each other's planes. When a batch is full, compares them
+/// along the line of the planes.
 class Crossings {
  public:
   Crossings(double clearance, std::span<Triage> answers)
       : clearance_(clearance), answers_(answers) {}
 
-  /// Adds pair `i` of a batch. Its answer goes to answers[where].
+  /// Adds pair `i` of a batch. The pair's answer will be in answers[where].
   HWY_INLINE void add(const Batch& batch, int i, const CornerOrder& order, std::size_t where) {
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -157,7 +157,7 @@ class Crossings {
       const OnLine line = compare_on_line<FilterBounds>(
           batch_.point(0, from), batch_.point(1, from), batch_.point(2, from),
           batch_.point(3, from), batch_.point(4, from), batch_.point(5, from));
-      // Triangles that miss each other may be within a clearance.
+      // Triangles that miss each other may still be within a clearance > 0.
       const unsigned apart = clearance_ == 0 ? bits_of(line.apart) : 0;
       const unsigned meeting = bits_of(line.meeting);
       for (int i = 0; i < std::min(kWide, count_ - from); ++i) {

@@ -1,11 +1,11 @@
-// Answers about two triangles from plain doubles alone, each proved by a forward error bound. If
-// rounding leaves a doubt, the answer is `unknown`, and exact arithmetic decides (verify/exact).
+// Answers about two triangles from plain doubles, each proved by a forward error bound. If rounding
+// leaves a doubt, the answer is `unknown`, and exact arithmetic decides (verify/exact).
 //
-// These filters decide most pairs that reach the exact tests, so they are made to be fast: they
-// allocate nothing, do not change the rounding mode, and branch only on whether they can answer.
+// These filters decide most pairs that reach the exact tests, so they are fast: they allocate
+// nothing, do not change the rounding mode, and branch only on whether they can answer.
 //
-// Preconditions: finite coordinates of any magnitude; round to nearest, subnormals not flushed,
-// products and sums not contracted.
+// Preconditions: finite coordinates of any magnitude; round to nearest; subnormals are not flushed;
+// products and sums are not contracted.
 #pragma once
 
 #include <array>
@@ -17,14 +17,17 @@
 
 namespace farcull {
 
-/// Corners of pair.b are prefetched this many pairs ahead. Those of pair.a are mostly in the cache.
+/// Corners of pair.b are prefetched this many pairs ahead. Corners of pair.a are mostly in the
+/// cache.
 inline constexpr std::size_t kAhead = 8;
 
-/// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks at their planes
-/// alone. `yes`: the triangles cross. `no`: one triangle is on one side of the other's plane and
-/// farther from it than the clearance, or, with clearance 0, the triangles miss each other along
-/// the line of the planes. `unknown` for triangles that are degenerate or touch without crossing,
-/// and for those so close to either case that rounding leaves a doubt.
+/// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks only at the planes of
+/// the triangles.
+/// - yes: the triangles cross.
+/// - no: one triangle is on one side of the other's plane and farther from it than the clearance;
+///   or the clearance is 0 and the triangles miss each other along the line of the planes.
+/// - unknown: a triangle is degenerate, the triangles touch without crossing, or rounding leaves a
+///   doubt.
 Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                      double clearance = 0);
 
@@ -32,19 +35,19 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2);
 
-/// Do the triangles (p, q, r) and (p, q, s) share more than the segment from p to q? Never `yes`,
-/// since they can share more only if the four points lie in one plane.
+/// Do the triangles (p, q, r) and (p, q, s) share more than the segment from p to q? Never `yes`:
+/// they can share more only if the four points lie in one plane, which doubles do not prove.
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
 /// Is the distance of the triangles at most `clearance` (> 0)? Decides by two points close to each
-/// other and the direction between them. Does not look for points where an edge crosses a face.
-/// `unknown` if distance and clearance differ by less than about 1e-14 of the pair's extent.
+/// other and the direction between the points. Does not look for points where an edge crosses a
+/// face. `unknown` if distance and clearance differ by less than about 1e-14 of the pair's extent.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
-/// Sets answers[i] to the answer of filter_planes() about the triangles a and b of pairs[i] and the
-/// clearance. The answers are the same on every instruction set (core/native/canvas.h). Fast if
-/// successive pairs have the same a. Preconditions: those at the top of this file; as many answers
-/// as pairs; every index is in range.
+/// Sets answers[i] to the answer of filter_planes() about pairs[i] and the clearance. The answers
+/// are the same on every instruction set (core/native/canvas.h). Fast if successive pairs have the
+/// same a. Preconditions: those at the top of this file; answers.size() == pairs.size(); every
+/// index is in range.
 void filter_pairs(const Scene& scene, std::span<const TrianglePair> pairs, double clearance,
                   std::span<Triage> answers);
 

@@ -1,6 +1,6 @@
 // Compares two triangles with each other's planes, and along the line where the planes cross. This
 // file is compiled for scalars (in filter_scalars.h, which derives the bounds) and for lanes (in
-// filter.cpp, where each lane is another pair). Both include it in a namespace that defines
+// filter.cpp, where each lane has a pair of its own). The including namespace defines
 //   Real, Truth   a number and an answer for each lane; PlainReal is one number for all lanes
 //   Point         a corner, with x(), y() and z()
 //   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.
@@ -22,7 +22,7 @@ FAR_FILTER Triple largest(const Triple& p, const Triple& q) {
   return {max(abs(p.x), abs(q.x)), max(abs(p.y), abs(q.y)), max(abs(p.z), abs(q.z))};
 }
 
-/// n = e x f; m is computed likewise from magnitudes, with sums in place of differences.
+/// n = e x f. m has the same terms as n, but adds their magnitudes.
 struct Normal {
   Triple n, m;
 };
@@ -34,8 +34,8 @@ FAR_FILTER Normal normal_of(const Triple& e, const Triple& f) {
   return {{yz - zy, zx - xz, xy - yx}, {abs(yz) + abs(zy), abs(zx) + abs(xz), abs(xy) + abs(yx)}};
 }
 
-/// Error bound of dot(normal.n, x) for points x relative to the origin of the normal, with |x| <= w
-/// per axis.
+/// Returns an error bound of dot(normal.n, x) for points x relative to the origin of the normal,
+/// with |x| <= w per axis.
 template <class Bounds>
 FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
   return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
@@ -48,7 +48,7 @@ FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
 struct Sides {
   Real value[3];
   Real bound;
-  Real needed;  // at least the value of a point at the clearance from the plane
+  Real needed;  // a larger |value| proves a distance above the clearance
 
   FAR_FILTER Real least() const { return min(min(value[0], value[1]), value[2]); }
   FAR_FILTER Real most() const { return max(max(value[0], value[1]), value[2]); }
@@ -62,8 +62,8 @@ struct Sides {
   }
 };
 
-/// The clearance times the length of the normal, rounded up: the computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and kLeastSquare makes up for squares
+/// Returns the clearance times the length of the normal, rounded up. The computed normal is within
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact normal per axis. kLeastSquare makes up for squares
 /// that underflow. 8 roundings follow.
 FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
   const Real length = sqrt(dot(normal.n, normal.n) + kLeastSquare);
@@ -84,7 +84,7 @@ FAR_FILTER Sides sides(const Point* s, const Point* t, PlainReal clearance) {
 /// The answers that the planes alone give.
 struct AgainstPlanes {
   Truth apart;     // a triangle is on one side of the other's plane, beyond the clearance
-  Truth crossing;  // each is on both sides of the other's plane; never together with apart
+  Truth crossing;  // each is on both sides of the other's plane; not set if `apart` is
   Sides a, b;      // of the corners of a and of b; `a` is not valid if every lane is apart
 };
 
@@ -106,8 +106,8 @@ struct OnLine {
   Truth apart, meeting;  // neither: a doubt
 };
 
-/// Compares the segments of two triangles on this line. The corners are in the order of
-/// corner_order().
+/// Compares the segments that the two triangles cover on the line of their planes. The corners are
+/// in the order of corner_order().
 template <class Bounds>
 FAR_FILTER OnLine compare_on_line(const Point& a0, const Point& a1, const Point& a2,
                                   const Point& b0, const Point& b1, const Point& b2) {

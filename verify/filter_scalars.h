@@ -1,5 +1,5 @@
-// The filters (verify/filter.h) on scalars. They take their bounds as a type. Also the derivations
-// of these bounds.
+// The filters (verify/filter.h) on scalars, and the derivations of their bounds. The bounds are a
+// template parameter.
 #pragma once
 
 #include <algorithm>
@@ -14,21 +14,20 @@
 
 namespace farcull {
 
-// Two triangles whose planes cross are compared along the line of the planes, in this order of
-// their corners.
+// If the planes of two triangles cross, the triangles are compared along the line of the planes.
 
 /// Corners of a and of b, by number. One corner of each triangle lies alone on its side of the
 /// other's plane. The two edges from this corner cross the line of the planes; the triangle covers
-/// the segment of the line between them. The three corners are ordered so that the other triangle's
-/// lone corner is on the positive side of their plane. So the ends of the segment are in a known
-/// order along the line, and two determinants compare the segments (Guigue, Devillers: Fast and
-/// robust triangle-triangle overlap test using orientation predicates, 2003).
+/// the segment between the crossings. The other two corners are ordered so that the other
+/// triangle's lone corner is on the positive side of the plane. So the ends of each segment are in
+/// a known order along the line, and two determinants compare the segments (Guigue, Devillers: Fast
+/// and robust triangle-triangle overlap test using orientation predicates, 2003).
 struct CornerOrder {
-  std::array<std::uint8_t, 3> a, b;  // the corner that is alone comes first
+  std::array<std::uint8_t, 3> a, b;  // the lone corner comes first
 };
 
-/// a_above: bit i is set if corner i of a is on the positive side of the plane of b; b_above
-/// likewise. Precondition: one or two bits of each are set.
+/// a_above: bit i is set if corner i of a is on the positive side of the plane of b. b_above:
+/// likewise for corners of b. Precondition: one or two bits of each are set.
 constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
   // The corner that is alone on its side, indexed by the bits of the corners above.
   constexpr std::array<std::uint8_t, 8> kAlone = {0, 0, 1, 2, 2, 1, 0, 0};
@@ -98,22 +97,22 @@ inline Triple operator-(const Triple& p, const Triple& q) {
   return {p.x - q.x, p.y - q.y, p.z - q.z};
 }
 
-/// Approximately p / |p|; not finite if p is zero or if products underflow or overflow.
+/// Returns approximately p / |p|; not finite if p is zero or if products underflow or overflow.
 inline Triple unit(const Triple& p) {
   const double length = std::sqrt(dot(p, p));
   return {p.x / length, p.y / length, p.z / length};
 }
 
-/// The sign of a value with error at most `bound`: -1 or 1, or 0 if it is in doubt.
+/// Returns the sign of a value with error at most `bound`: -1 or 1, or 0 if the sign is in doubt.
 inline int sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
-/// The sign of dot(normal.n, w), or 0 if it is in doubt.
+/// Returns the sign of dot(normal.n, w), or 0 if the sign is in doubt.
 template <class Bounds>
 int side_of(const Normal& normal, const Triple& w) {
   return sign(dot(normal.n, w), side_bound<Bounds>(normal, magnitudes(w)));
 }
 
-/// Bit i is set if the value of corner i is above 0.
+/// Bit i of the result is set if the value of corner i is above 0.
 inline unsigned above(const Sides& sides) {
   return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
 }
@@ -135,18 +134,18 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
   if (!planes.crossing) return Triage::unknown;
   const auto& [i, j] = kCornerOrders[above(planes.a) + 8 * above(planes.b)];
   const OnLine line = compare_on_line<Bounds>(a[i[0]], a[i[1]], a[i[2]], b[j[0]], b[j[1]], b[j[2]]);
-  // Triangles that miss each other may be within a clearance.
+  // Triangles that miss each other may still be within a clearance > 0.
   if (line.apart && clearance == 0) return Triage::no;
   return line.meeting ? Triage::yes : Triage::unknown;
 }
 
 // Corners are relative to v; N = a1 x a2 and M = b1 x b2. The signs of A1 = M . a1 and A2 = M . a2
-// say on which sides of b's plane a's corners lie; B1 = N . b1 and B2 = N . b2 say the same of b's
-// corners. If A1 and A2 have the same sign, a meets b's plane in v alone; likewise B1 and B2. Else
-// each triangle meets the line of both planes in a segment from v. The segments have the directions
-// sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1), since these are sums with weights above 0
-// and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1 = N x M, so the
-// directions are the same iff A2 and B2 differ in sign.
+// say on which sides of b's plane a's corners lie. The signs of B1 = N . b1 and B2 = N . b2 say the
+// same of b's corners. If A1 and A2 have the same sign, a meets b's plane in v alone; likewise B1
+// and B2. Otherwise each triangle meets the line of both planes in a segment from v. The segments
+// have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1): these are sums with
+// weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1 = N x M.
+// So the directions are the same iff A2 and B2 differ in sign.
 template <class Bounds>
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2) {
@@ -166,17 +165,17 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
   if (a1_side * a2_side > 0) return Triage::no;
   if (a1_side * a2_side * b1_side * b2_side != 0)
     return a2_side * b2_side < 0 ? Triage::yes : Triage::no;
-  // Nearly in one plane: if a plane through v has one triangle on each side, they share only v.
+  // Nearly in one plane: if a plane through v separates the triangles, they share only v.
   return divides<Bounds>((unit(e1) + unit(e2)) - (unit(f1) + unit(f2)), e1, e2, f1, f2)
              ? Triage::no
              : Triage::unknown;
 }
 
-// (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of r - p and
-// s - p that are perpendicular to the edge. If this is negative, the plane through the edge that is
-// perpendicular to the first part has r on one side and s on the other: the triangles share the
-// edge alone. In a mesh it is negative at every edge that is not folded sharply. Otherwise, if s is
-// off the plane of (p, q, r), the triangles share the edge alone, too.
+// The product (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of
+// r - p and s - p that are perpendicular to the edge. If it is negative, the plane through the edge
+// that is perpendicular to the first part has r on one side and s on the other. Then the triangles
+// share only the edge. In a mesh the product is negative at every edge that is not folded sharply.
+// Triangles also share only the edge if s is off the plane of (p, q, r).
 template <class Bounds>
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Triple e = difference(q, p);
@@ -218,16 +217,16 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 
 using Corners = std::array<Vec3, 3>;
 
-/// What a point lies on: edge 0 to 2 (from corner i to the next), corner i as kCorner + i, or the
-/// face.
+/// The place of a point: 0 to 2 for an edge (i: from corner i to the next), kCorner + i for corner
+/// i, or kFace.
 constexpr int kCorner = 3, kFace = 6;
 
 /// The best guess so far.
 struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
-  int of_a = kCorner, of_b = kCorner;  // what the points lie on
-  double s = 0, t = 0;  // on edges: how far along each; on a face: the weights of corners 1 and 2
+  int of_a = kCorner, of_b = kCorner;  // the places of the two points
+  double s = 0, t = 0;  // on an edge: how far along it; on a face: the weights of corners 1 and 2
 
   void offer(const Vec3& d, int on_a, int on_b, double along_a, double along_b) {
     const double square = d.squaredNorm();
@@ -235,11 +234,10 @@ struct Closest {
   }
 };
 
-inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // 0 for NaN
+inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // returns 0 for NaN
 
-/// Offers the difference from p + s u to q + t v, two points of the segments that are closest
-/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1]. The segments are edge i of
-/// a and edge j of b.
+/// Offers the difference from p + s u to q + t v, the closest points of edge i of a and edge j of b
+/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
 inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Closest& closest) {
   const Vec3 &p = a[i], &p_end = a[(i + 1) % 3], &q = b[j], &q_end = b[(j + 1) % 3];
   const Vec3 u = p_end - p;
@@ -257,7 +255,7 @@ inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Clo
 }
 
 /// If corner i of triangle `of` lies over the face of t, offers the difference from the corner to
-/// the face. sense: 1 if `of` is a; -1 if it is b: then the opposite vector is offered.
+/// the face. sense: 1 if `of` is a; -1 if `of` is b, and the opposite vector is offered.
 inline void offer_face(const Corners& of, int i, const Corners& t, double sense, Closest& closest) {
   const Vec3& p = of[i];
   const Vec3 e = t[1] - t[0];
@@ -274,7 +272,7 @@ inline void offer_face(const Corners& of, int i, const Corners& t, double sense,
                 sense > 0 ? kFace : corner, l, m);
 }
 
-/// The largest |coordinate| per axis of all corners.
+/// Returns the largest |coordinate| of all corners, per axis.
 inline Vec3 extent_of(const Corners& a, const Corners& b) {
   Vec3 most = Vec3::Zero();
   for (const Corners* t : {&a, &b}) {
@@ -283,12 +281,12 @@ inline Vec3 extent_of(const Corners& a, const Corners& b) {
   return most;
 }
 
-/// The corners relative to a point.
+/// Returns the corners relative to a point.
 inline Corners relative_to(const Vec3& origin, const Corners& t) {
   return {t[0] - origin, t[1] - origin, t[2] - origin};
 }
 
-/// Two points of the triangles, near each other, and the corners relative to a[0].
+/// The corners relative to a[0], and two points of the triangles near each other.
 struct Near {
   Corners s, t;
   Closest closest;
@@ -307,8 +305,8 @@ inline Near near_points(const Corners& a, const Corners& b) {
   return out;
 }
 
-/// A lower bound of the gap between the projections of the triangles onto the difference of the
-/// closest points, times the length of this difference.
+/// Let d be the difference of the closest points. Returns a lower bound of |d| times the gap
+/// between the projections of the triangles onto d.
 template <class Bounds>
 double gap_along(const Near& near, const Vec3& extent) {
   const auto& [s, t, closest] = near;

@@ -1,9 +1,9 @@
 // Counts the crossings of a ray with the object, each by its direction. Let a line pass through the
 // point x in direction d. The sign of d . ((p - x) x (q - x)) tells on which side of the line an
 // edge from p to q passes. If all three edges of a triangle pass on one side, the line crosses the
-// triangle; the sign of the determinant of the three corners relative to x tells whether before or
-// behind x. Signs are found in doubles, with the bound of filter_scalars.h, or in rationals if that
-// leaves a doubt.
+// triangle. The sign of the determinant of the corners relative to x tells whether the crossing is
+// before or behind x. Doubles find the signs, with the bound of filter_scalars.h; if they leave a
+// doubt, rationals do.
 #include "verify/inside.h"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ using rational::exact;
 using rational::minus;
 using rational::Q3;
 
-/// The sign of d . (u x v) where u = p - x, v = q - x; if d_is_corner, d is a third corner, and the
-/// sign is that of (d - x) . (u x v).
+/// Returns the sign of d . (u x v) where u = p - x, v = q - x. If d_is_corner, d is a third corner,
+/// and the result is the sign of (d - x) . (u x v).
 int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool d_is_corner) {
   const auto u = filters::difference(p, x), v = filters::difference(q, x);
   const filters::Triple w =
@@ -42,14 +42,14 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
   return sgn(dot(third, cross(minus(exact(p), at), minus(exact(q), at))));
 }
 
-/// Whether the ray from x crosses the triangle: 0 for no, else 1 or -1 by the side that it comes
-/// from. Empty: the line of the ray meets an edge, or lies in the triangle's plane. Precondition: x
-/// is not on the triangle.
+/// Returns 0 if the ray from x misses the triangle, otherwise 1 or -1 by the side that it comes
+/// from. Empty if the line of the ray meets an edge or lies in the triangle's plane. Precondition:
+/// x is not on the triangle.
 std::optional<int> crossing(const Corners& t, const Vec3& x, const Vec3& d) {
   std::array<int, 3> side{};
   for (int i = 0; i < 3; ++i) side[i] = triple_sign(t[i], t[(i + 1) % 3], x, d, false);
   const auto [least, most] = std::minmax({side[0], side[1], side[2]});
-  if (least < 0 && most > 0) return 0;  // passes by
+  if (least < 0 && most > 0) return 0;  // the line misses the triangle
   if (least == 0 || most == 0) return std::nullopt;
   // x + s d is in the plane for s = det / (sum of the three products with the signs `side`).
   return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? side[0] : 0;
@@ -76,10 +76,10 @@ struct Crossings {
   bool odd = false;          // true if the number of crossings is odd
 };
 
-/// The crossings of a ray; empty if one was unclear. If the ray is along the first axis, boxes show
-/// that it misses most triangles. Triangles that are segments or points are left out, since no ray
-/// in general position crosses them. (If x is on the line of such a triangle, all signs are 0 for
-/// every direction.)
+/// Returns the crossings of a ray; empty if crossing() is empty for a triangle. If the ray is along
+/// the first axis, boxes show that it misses most triangles. Triangles that are segments or points
+/// are left out, since no ray in general position crosses them. (If x is on the line of such a
+/// triangle, all signs are 0 for every direction.)
 std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
                                    const Vec3& d, bool first_axis) {
   Crossings out;
@@ -103,10 +103,10 @@ std::optional<Crossings> crossings(const Scene& scene, const Object& object, con
 
 Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
   if (const auto answer = crossings(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
-  // For each edge of a triangle that is not degenerate, the unclear directions lie in a plane (also
-  // if x is in the plane of the triangle, but not on it: for all other directions two of the signs
-  // are opposite). With 2^52 values per axis each such plane holds at most 2^-52 of all directions.
-  // So with 2^34 edges at most one draw in 2^18 is unclear.
+  // For each edge of a triangle that is not degenerate, the directions with an empty answer lie in
+  // a plane. (This holds for x in the triangle's plane, too: other directions give two opposite
+  // signs.) With 2^52 values per axis each such plane holds at most 2^-52 of all directions. So
+  // with 2^34 edges at most one draw in 2^18 has an empty answer.
   RandomNumbers random(1);
   constexpr int kDraws = 16;
   for (int k = 0; k < kDraws; ++k) {
@@ -120,7 +120,7 @@ Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
 using Place = std::array<double, 3>;
 using Places = std::array<Place, 3>;
 
-/// The corners of those triangles of the object that have three different corners.
+/// Returns the corners of those triangles of the object that have three different corners.
 std::vector<Places> places_of(const Scene& scene, const Object& o) {
   std::vector<Places> out;
   out.reserve(o.triangle_count);
@@ -129,20 +129,20 @@ std::vector<Places> places_of(const Scene& scene, const Object& o) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     Places& p = out.emplace_back();
     for (int i = 0; i < 3; ++i) {
-      for (int axis = 0; axis < 3; ++axis) p[i][axis] = t[i][axis] + 0.0;  // no -0.0
+      for (int axis = 0; axis < 3; ++axis) p[i][axis] = t[i][axis] + 0.0;  // turns -0.0 into 0.0
     }
   }
   return out;
 }
 
 struct Edge {
-  std::array<Place, 2> ends;   // the lower one first
-  bool forward = false;        // from the lower end to the upper one
-  std::uint32_t triangle = 0;  // the triangle of the edge
+  std::array<Place, 2> ends;  // the lower end first
+  bool forward = false;       // true if the edge goes from the lower end to the upper end
+  std::uint32_t triangle = 0;
 };
 
 /// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
-/// returns false. Returns true if no call did.
+/// returns false. Returns true if all calls returned true.
 bool each_edge(std::span<const Edge> edges, const auto& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {
@@ -152,7 +152,7 @@ bool each_edge(std::span<const Edge> edges, const auto& group) {
   return true;
 }
 
-/// The edges of all triangles, ordered by their ends.
+/// Returns the edges of all triangles, ordered by their ends.
 std::vector<Edge> edges_of(const std::vector<Places>& triangles) {
   std::vector<Edge> edges;
   edges.reserve(3 * triangles.size());
@@ -182,15 +182,15 @@ bool may_be_folded(const Corners& a, const Corners& b) {
   const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
   const double of_a = e.norm() * f.norm(), of_b = e.norm() * g.norm();
   // `sides` is negative if the triangles lie on different sides of the edge. Its error is less than
-  // 30 u of_a of_b, and underflow. Products of two lengths above 1e-280 lose far less than 1e-12 of
-  // themselves by underflow, and the product of four loses less than 1e-290.
+  // 30 u of_a of_b, plus underflow. By underflow, products of two lengths above 1e-280 lose far
+  // less than 1e-12 of themselves, and the product of four loses less than 1e-290.
   const double sides = e.cross(f).dot(e.cross(g));
   return !(of_a > 1e-280 && of_b > 1e-280 && sides < -(1e-12 * of_a * of_b + 1e-290));
 }
 
 /// True if two triangles of one plane pass a common edge in opposite directions and lie on the same
-/// side of it, as the two sides of a face do, however each side is cut into triangles. Also true if
-/// more than 64 triangles have one edge.
+/// side of the edge, as the two sides of a face do. True also if more than 64 triangles have one
+/// edge.
 bool has_flat_fold(const std::vector<Places>& triangles, const std::vector<Edge>& edges) {
   const auto corners_at = [&](const Edge& edge) {
     const auto point = [](const Place& p) { return Vec3(p[0], p[1], p[2]); };
@@ -229,7 +229,8 @@ Surface doubted_surface_of(const Scene& scene, std::uint32_t object) {
   if (out == Surface::open) return out;
   const FloatingPointGuard guard;
   const bool folded = out == Surface::oriented && has_flat_fold(triangles, edges);
-  // Each triangle with its corners in ascending order, and whether this reverses its orientation.
+  // Each triangle with its corners in ascending order, and whether sorting reversed its
+  // orientation.
   std::vector<std::pair<Places, bool>> sorted;
   sorted.reserve(triangles.size());
   for (Places& p : triangles) {

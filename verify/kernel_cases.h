@@ -77,7 +77,7 @@ inline Triangle random_triangle(Draws& random, int kind) {
         return Vec3(0.5 * random.below(20) - at[0] + std::floor(at[0]),
                     0.5 * random.below(20) - at[1] + std::floor(at[1]), 0.5 * random.below(20));
       });
-    case 12: {  // a corner a little off the line of the others
+    case 12: {  // a corner a little off the line of the other two
       const Vec3 e = random.cube(20);
       return {at, at + e, at + e * random.uniform(-1, 2) + random.scaled3(-60, -10)};
     }
@@ -102,8 +102,8 @@ inline Weights random_weights(Draws& random) {
   return minkowski_line::weights(std::min(a, b), std::abs(a - b));
 }
 
-/// A triangle and the centre of a pixel near it. The centre is inside the triangle's image,
-/// outside, or about a radius from a point of the image: off by 2^-50 to 2^-5 of the radius.
+/// A triangle and the centre of a pixel near it. The centre is inside the triangle's image, or
+/// outside, or about a radius from a point of the image (off by 2^-50 to 2^-5 of the radius).
 struct Case {
   int kind;
   Triangle triangle;
@@ -130,9 +130,9 @@ inline Case random_case_at(Draws& random, int kind, float cx, float cy) {
 
 inline float number(double x) { return static_cast<float>(x); }
 
-/// A solid whose floats are drawn directly, not computed from a triangle. It may have corners with
-/// zeros, denormals and equal coordinates, edges along and across the line, lengths on either side
-/// of the kernel's 1e-12, a radius from 0 to 2^20, and any cuts.
+/// Returns a solid whose floats are drawn directly, not computed from a triangle. It may have
+/// zeros, denormals, equal coordinates, edges along and across the line, lengths on either side of
+/// the kernel's 1e-12, a radius from 0 to 2^20, and any cuts.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;

@@ -1,5 +1,5 @@
-// Compares an answer about a box with the part of the line in the box, and one about an exact
-// offset with points of the line that were found to lie in the solid.
+// An answer about a box is compared with the part of the line in the box. An answer about an exact
+// offset is compared with points of the line that were found to lie in the solid.
 #include "verify/kernel_check.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 using rational::Draws;
 using rational::Q;
 
-// An engine for each index, so that a case does not depend on the ones before.
+// Each index has its own engine, so that a case does not depend on earlier cases.
 Draws draws_of(std::uint64_t seed, std::uint64_t index) {
   return Draws(seed * 0x9e3779b97f4a7c15u + index);
 }
@@ -39,8 +39,8 @@ void count_excess(double excess, KernelTally& tally) {
 
 void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally) {
   if (!usable(answer)) return count(false, tally);
-  // The kernel widens by 2^-20, so comparing with an interval in doubles that is a little too large
-  // decides nearly always.
+  // The kernel widens by 2^-20. So an interval in doubles that is a little too large decides nearly
+  // always.
   const auto outer = box_line::outer_interval(c.cx, c.cy, c.solid);
   bool held = !outer || (answer.hit && answer.entry <= outer->lo && answer.exit >= outer->hi);
   if (!held) {

@@ -1,5 +1,5 @@
-// Decides with rationals whether a kernel's answer is right: the answer has to contain the part of
-// the line that is in the exact solid, and must not be much wider. The answers may come from a
+// Decides with rationals whether a kernel's answer is right. The answer has to contain the part of
+// the line that is in the exact solid, and must not be much wider. The answer may come from a
 // device or from this CPU.
 #pragma once
 
@@ -10,15 +10,15 @@
 namespace farcull {
 
 struct KernelTally {
-  std::uint64_t checked = 0;   // bounds and points compared
-  std::uint64_t lost = 0;      // bounds and points outside the answer
+  std::uint64_t checked = 0;   // bounds and points that were compared
+  std::uint64_t lost = 0;      // compared bounds and points outside the answer
   std::uint64_t ordinary = 0;  // answers that have to be tight
   std::uint64_t loose = 0;     // ordinary answers that are wider than kLoose allows
-  double excess = 0;           // px, the most that an ordinary answer exceeds the exact interval
+  double excess = 0;  // px; the most by which an ordinary answer exceeds the exact interval
 };
 
-/// At most the share kLooseShare of the ordinary answers may have an end more than kLoose (px)
-/// beyond the exact end. This share is ten times the one that the test of the box finds
+/// At most the fraction kLooseShare of the ordinary answers may have an end more than kLoose (px)
+/// beyond the exact end. The test of the box finds a tenth of this fraction
 /// (ObbKernel.IsNotAbsurdlyLooseOnOrdinaryBoxes).
 constexpr double kLoose = 0.1, kLooseShare = 1e-2;
 
@@ -29,14 +29,14 @@ void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, Ker
 void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
                      KernelTally& tally);
 
-/// A triangle near a pixel centre, of one of the kinds that have been hard. ordinary: of moderate
-/// size and slope.
+/// A triangle near a pixel centre, of one of the kinds that are hard. ordinary: true if the
+/// triangle is of moderate size and slope.
 struct KernelTriangle {
   std::array<Vec3, 3> corners;
   double radius;  // px
   bool ordinary;
 };
-/// Each function draws a case for a seed and an index, the same on every machine. The floats of
+/// Each function returns the case of a seed and an index, the same on every machine. The floats of
 /// adversarial solids are drawn directly, not computed from a triangle.
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);

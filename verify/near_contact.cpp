@@ -1,6 +1,6 @@
 // Finds contacts. The filter of distances (verify/filter_scalars.h) keeps the weights of its
-// points, which give the contact of near triangles; an edge through a face gives that of crossing
-// ones. Exact arithmetic decides the rest.
+// points, which give the contact of near triangles. For crossing triangles, an edge through a face
+// gives the contact. Exact arithmetic decides the rest.
 #include "verify/near_contact.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ using Corners = std::array<Vec3, 3>;
 // set to 0, which moves the point by 2 u R. All this is below 8 u R. The sum with c_0 is rounded
 // last.
 
-/// What the point of these weights lies on.
+/// Returns the feature on which the point with these weights lies.
 Feature feature_of(const Vec3& weights) {
   const unsigned corners = (weights[0] != 0) + 2u * (weights[1] != 0) + 4u * (weights[2] != 0);
   constexpr std::array<Feature, 8> kOf = {{{FeatureKind::face, 0},
@@ -60,13 +60,14 @@ Vec3 edge_weights(int edge, double along) {
   return out;
 }
 
-/// The weights of a point. on: its place, as in filters::Closest; along: how far along an edge.
+/// Returns the weights of a point. on: its place, as in filters::Closest. along: how far along an
+/// edge.
 Vec3 weights_of(int on, double along, double l, double m) {
   if (on == filters::kFace) return {std::max(1 - l - m, 0.0), l, m};
   return on < filters::kCorner ? edge_weights(on, along) : edge_weights(on - filters::kCorner, 0);
 }
 
-/// + 0.0 turns -0.0 into 0.0.
+/// Returns the weighted mean of the corners. + 0.0 turns -0.0 into 0.0.
 Vec3 mean(const Corners& t, const Vec3& weights) {
   for (int i = 0; i < 3; ++i) {
     if (weights[i] == 1) return t[i].array() + 0.0;
@@ -83,12 +84,12 @@ NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3
 /// An edge of one triangle that passes through the face of the other one.
 struct Passing {
   double least = -HUGE_VAL;  // the least weight of the point in the face
-  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of a and of b
+  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // on a, and on b
   int side = 0;                                                // 0: the edge is one of a; 1: of b
-  double gap = HUGE_VAL;  // between the points of the edge and of the face, summed over axes
+  double gap = HUGE_VAL;  // between the points, summed over axes
 };
 
-/// Keeps the edge of x (a or b, by `side`) whose point on y's plane is deepest in y.
+/// Keeps in `best` the edge of x whose point on y's plane is deepest in y. side: 0 if x is a.
 void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) {
   const Vec3 e = y[1] - y[0], f = y[2] - y[0], n = e.cross(f);
   const double nn = n.squaredNorm();
@@ -112,8 +113,8 @@ void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) 
   }
 }
 
-/// The contact of triangles that cross: the point of an edge. Empty if this point may be farther
-/// than 64 u R from the other triangle.
+/// Returns the contact of triangles that cross: the point of an edge. Empty if this point may be
+/// farther than 64 u R from the other triangle.
 std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
   const Corners s = filters::relative_to(a[0], a), t = filters::relative_to(a[0], b);
   Passing best;
@@ -150,7 +151,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
       weights[closest::edge_end(feature.index)] = rounded_quotient(l, below, 0);
       continue;
     }
-    if (other.kind == FeatureKind::edge) {  // it passes through the face: the face's multiples
+    if (other.kind == FeatureKind::edge) {  // the multiples of the point in the face
       const Scaled::Corners& face = side == 0 ? pair.a : pair.b;
       const auto e = closest::minus(face[1], face[0]), f = closest::minus(face[2], face[0]);
       const auto n = closest::cross(e, f);

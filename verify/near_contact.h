@@ -17,22 +17,22 @@ struct NearContact {
   std::array<Vec3, 2> weights =
       {};                           // p and q are the means of the corners with these weights, >= 0
   Vec3 normal = Vec3::Zero();       // (q - p) / |q - p|; zeros if the triangles meet
-  std::array<Feature, 2> features;  // what p and q lie on: the corners whose weights are not 0
+  std::array<Feature, 2> features;  // p and q lie on these features: the corners with weights > 0
 };
 
-/// The contact with the result of closest_points(a, b). Distance, points and weights are each
-/// rounded once. Each coordinate of the normal is off by at most 8 u of itself, u = 2^-53.
+/// Returns the contact with the result of closest_points(a, b). Distance, points and weights are
+/// each rounded once. Each coordinate of the normal is off by at most 8 u of itself, u = 2^-53.
 NearContact exact_contact(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                           const Closest& closest);
 
-/// contact_within() accepts a distance in doubles if its bounds are at most this far apart,
-/// relative to the lower one. Tests set a larger value, to show that answers are then wrong.
+/// contact_within() accepts a distance in doubles if its two bounds differ by at most this fraction
+/// of the lower bound. Tests set a larger value, to show that answers are then wrong.
 constexpr double kContactTolerance = 0x1p-33;
 
-/// The contact of triangles whose distance is at most `within` (finite, >= 0). Empty if they are
-/// farther apart, which is decided exactly. planes: filter_planes(a, b, within). Doubles give the
-/// contact if error bounds allow that; else exact_contact() does. Errors, where R is the largest
-/// difference of two coordinates on one axis:
+/// Returns the contact of triangles whose distance is at most `within` (finite, >= 0). Empty if
+/// they are farther apart, which is decided exactly. planes: filter_planes(a, b, within). Doubles
+/// give the contact if error bounds allow that; otherwise exact_contact() does. Errors, where R is
+/// the largest difference of two coordinates on one axis:
 /// - distance: at most 2^-32 of itself (subnormal: half of the last bit). It is 0 only if the
 ///   triangles meet or the exact distance is rounded to 0.
 /// - points: each is in its triangle up to 2^-45 R and the rounding of its coordinates. Their

@@ -1,13 +1,13 @@
-// Finds the nearest of many pairs of triangles. Bounds in doubles leave the pairs that can be the
-// nearest one; the squared distances of these are compared exactly.
+// Finds the nearest of many pairs of triangles. Bounds in doubles leave few pairs that can be
+// nearest. The squared distances of these pairs are compared exactly.
 //
-// Most of the pairs that are left have triangles around one corner or edge, and the same two
-// closest points. SamePoints recognises such a pair. Let F and G be the features of closest points
-// of a pair that was solved, and w the difference of these points. Another pair has points as near
-// if its triangles have the corners of F and of G. It has none nearer if w . (x - p) < 0 for the
-// other corners x of the triangle with F, and w . (y - q) > 0 for the other corners y of the
-// triangle with G (closest_points.cpp, "Proof of a guess"). Here p may be any corner of F, and q
-// any corner of G, since w is perpendicular to both features.
+// Most of these pairs have triangles around one corner or edge, and the same two closest points.
+// SamePoints recognises such a pair. Let F and G be the features of closest points of a solved
+// pair, and w the difference of these points. Another pair has points as near if its triangles have
+// the corners of F and of G. It has no nearer points if w . (x - p) < 0 for the other corners x of
+// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G
+// (closest_points.cpp, "Proof of a guess"). Here p may be any corner of F, and q any corner of G,
+// since w is perpendicular to both features.
 //
 // Doubles decide the signs if they are beyond the rounding errors: kTie and the constants after it
 // (verify/rounding.h) bound these errors, and docs/proofs.md has the proofs (`distance.tie`).
@@ -32,7 +32,7 @@ namespace {
 using filters::DistanceBounds;
 using Triangle = std::array<Vec3, 3>;
 
-/// The closest points of a pair, to recognise pairs that have the same ones.
+/// The closest points of a pair, to recognise pairs with the same closest points.
 class SamePoints {
  public:
   SamePoints(const Triangle& a, const Triangle& b, const Closest& closest)
@@ -42,14 +42,14 @@ class SamePoints {
              Vec3::Constant(kTieSubnormal)),
         sides_{side_of(a, closest.features[0]), side_of(b, closest.features[1])} {}
 
-  /// True: these are the closest points of a and b too. False: not known.
+  /// True only if the closest points are closest points of a and b as well.
   bool are_those_of(const Triangle& a, const Triangle& b) const {
     return is_behind(sides_[0], a, 1) && is_behind(sides_[1], b, -1);
   }
 
  private:
   struct Side {
-    Triangle corners;  // of the feature
+    Triangle corners;  // corners of the feature
     int count;
   };
   static Side side_of(const Triangle& t, const Feature& feature) {
@@ -84,13 +84,13 @@ class SamePoints {
 };
 
 /// Recognises pairs that are no nearer than a given pair, by planes that separate the triangles of
-/// the given pair. How far a triangle extends along their normals is computed once.
+/// the given pair. reach() and start() of each triangle are computed once.
 class NoNearer {
  public:
   NoNearer(const Scene& scene, const TrianglePair& pair)
       : scene_(scene), planes_(scene.corners(pair.a), scene.corners(pair.b)) {}
 
-  /// True: the pair is farther apart, or as far if `as_far`. False: not known.
+  /// True only if the pair is farther apart than the given pair (or as far, if `as_far`).
   bool shows(const TrianglePair& pair, bool as_far) {
     const auto [reach, new_reach] = reach_.try_emplace(pair.a);
     if (new_reach) reach->second = planes_.reach(scene_.corners(pair.a));
@@ -105,15 +105,14 @@ class NoNearer {
   std::unordered_map<std::uint32_t, double> reach_, start_;
 };
 
-/// A pair that may be the nearest one: its index, and bounds of its distance.
+/// A pair that may be the nearest pair: its index, and bounds of its distance.
 struct Candidate {
   std::size_t at;
   DistanceBounds bounds;
 };
 
-/// The pairs, in order, that can be the first of the nearest pairs. Leaves out pairs[0], which is
-/// at most `least` apart, and pairs with the same closest points (`same`), which come after
-/// pairs[0].
+/// Returns the pairs, in order, that can be the first of the nearest pairs. Leaves out pairs[0],
+/// whose distance is at most `least`, and later pairs with the same closest points (`same`).
 std::vector<Candidate> candidates_of(const Scene& scene, std::span<const TrianglePair> pairs,
                                      double least, const SamePoints& same) {
   std::vector<Candidate> out;
@@ -127,7 +126,7 @@ std::vector<Candidate> candidates_of(const Scene& scene, std::span<const Triangl
     if (bounds.lower > least) continue;
     least = std::min(least, bounds.upper);
     out.push_back({i, bounds});
-    if (least == 0 && bounds.upper == 0) break;  // no later pair is the first at distance 0
+    if (least == 0 && bounds.upper == 0) break;  // no later pair can be the first at distance 0
     if (out.size() > 2 * kept + 1000) {
       std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
       kept = out.size();
@@ -162,8 +161,8 @@ std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const Tria
   SamePoints same(first_a, first_b, closest);
   std::optional<NoNearer> no_nearer;  // made once a candidate is found to be no nearer
   std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
-  // By lower bound, so that near pairs come early. The sort is stable, so pairs with lower bound 0
-  // stay in order, and the first that touches ends the search.
+  // Sorts by lower bound, so that near pairs come early. The sort is stable, so pairs with lower
+  // bound 0 stay in order, and the first pair that touches ends the search.
   std::ranges::stable_sort(left, {}, [](const Candidate& c) { return c.bounds.lower; });
   for (const auto& [at, bounds] : left) {
     if (bounds.lower > at_most) break;  // all later ones are farther, too

@@ -1,4 +1,4 @@
-// First looks for a dividing plane, then cuts each triangle with a contact into convex pieces, and
+// First looks for a dividing plane. Then cuts each triangle with a contact into convex pieces, and
 // casts a ray through a point of each piece along an axis, to both sides of the triangle.
 #include "verify/overlap.h"
 
@@ -24,9 +24,9 @@ using rational::Q;
 using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::size_t kMostPlanes = 64;    // at most this many are tried as dividing planes
-constexpr std::size_t kMostPieces = 2048;  // of a triangle, at most
-// Largest number of tests of a piece with a triangle of the objects. They take about two seconds.
+constexpr std::size_t kMostPlanes = 64;    // at most this many planes are tried as dividing planes
+constexpr std::size_t kMostPieces = 2048;  // at most this many pieces of a triangle
+// At most this many tests of a piece with a triangle are made. They take about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
 
 /// The points p with normal . p = offset.
@@ -42,7 +42,7 @@ Plane plane_of(const Corners& t) {
   return {cross(minus(exact(t[1]), at), minus(exact(t[2]), at)), at};
 }
 
-/// The side of the plane of t that p is on: -1, 0 or 1.
+/// Returns the side of the plane of t that p is on: -1, 0 or 1.
 int side_of(const Corners& t, const Vec3& p) {
   const filters::Normal n =
       filters::normal_of(filters::difference(t[1], t[0]), filters::difference(t[2], t[0]));
@@ -59,7 +59,7 @@ Box box_of(const Corners& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-/// The sides of the plane of t on which the object has corners: bit 0 below, bit 1 above.
+/// Returns the sides of the plane of t on which the object has corners: bit 0 below, bit 1 above.
 unsigned sides_of(const Scene& scene, std::uint32_t object, const Corners& t) {
   const Object& o = scene.objects[object];
   unsigned sides = 0;
@@ -103,10 +103,10 @@ void cut(std::vector<Polygon>& pieces, const Plane& plane) {
   }
 }
 
-/// Cuts pieces of t along a triangle that meets it: along its plane, or along the lines of its
-/// edges where it lies in the plane of t.
+/// Cuts pieces of t along a triangle that meets t: along its plane, or along the lines of its edges
+/// if it lies in the plane of t.
 void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& other) {
-  if (shape(other) != Shape::triangle) return;  // it has no side
+  if (shape(other) != Shape::triangle) return;  // a segment or point does not divide
   const bool flat =
       std::ranges::all_of(other, [&](const Vec3& p) { return of_t.side(exact(p)) == 0; });
   if (!flat) return cut(pieces, plane_of(other));
@@ -116,8 +116,8 @@ void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& othe
   }
 }
 
-/// A point inside the polygon: its corners get random weights, so the point hardly ever lies on a
-/// given line.
+/// Returns a point inside the polygon. The corners get random weights, so the point hardly ever
+/// lies on a given line.
 Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   Q3 sum = {0, 0, 0};
   Q total = 0;
@@ -131,14 +131,14 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
 }
 
 /// Whether the places just below and just above a point of a plane, along an axis, are inside an
-/// object.
+/// object. The two rules are in overlap.h.
 struct Sides {
   std::array<bool, 2> perhaps{};  // one of the two rules shows it
   std::array<bool, 2> inside{};   // both rules show it
 };
 
-/// The sides of p. Empty if the line through p along the axis meets an edge, or if a triangle that
-/// is not in the plane contains p.
+/// Returns the sides of p. Empty if the line through p along the axis meets an edge, or if a
+/// triangle that is not in the plane contains p.
 std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
                               const Q3& p, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -162,13 +162,13 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
       side[i] = sgn(Q((b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u])));
     }
     const auto [least, most] = std::minmax({side[0], side[1], side[2]});
-    if (least < 0 && most > 0) continue;  // passes by
+    if (least < 0 && most > 0) continue;  // the line misses t
     if (least == 0 || most == 0) {
       if (shape(t) != Shape::triangle) continue;  // no ray in general position crosses it
       return std::nullopt;
     }
     const Plane of_t = plane_of(t);
-    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // of p over the triangle
+    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // sign: is p above t?
     if (height == 0) {
       for (const Q3& c : corner) {
         if (plane.side(c) != 0) return std::nullopt;
@@ -188,8 +188,8 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
   return out;
 }
 
-/// Whether one of the six rays along the axes from the point meets no triangle of the object. A ray
-/// that may meet an edge counts as one that meets a triangle.
+/// True if one of the six rays along the axes from the point meets no triangle of the object. A ray
+/// that may meet an edge counts as meeting a triangle.
 bool sees_out(const Scene& scene, std::uint32_t object, const Vec3& point) {
   const Q3 p = exact(point);
   unsigned free = 0x3f;  // two bits for each axis: forward, backward
@@ -224,8 +224,8 @@ class PieceTest {
         triangles_(scene.objects[objects.a].triangle_count +
                    std::size_t{scene.objects[objects.b].triangle_count}) {}
 
-  /// Whether pieces of triangle t of object `own` prove that it overlaps the other object.
-  /// `others`: the triangles of the other object that meet t.
+  /// Returns whether pieces of triangle t of object `own` prove that it overlaps the other object.
+  /// others: the triangles of the other object that meet t.
   Overlap test(std::uint32_t own, std::uint32_t t, std::span<const std::uint32_t> others) {
     const Corners corners = scene_.corners(t);
     if (shape(corners) != Shape::triangle) return Overlap::unknown;
@@ -235,7 +235,7 @@ class PieceTest {
       cut_by(pieces, plane, scene_.corners(other));
       if (pieces.size() > kMostPieces) return Overlap::unknown;
     }
-    // Where the object meets itself, its own inside changes within the triangle.
+    // Where its own object meets t, the inside of this object changes within t.
     const Box box = box_of(corners);
     for_triangles(scene_, own, [&](const Corners& other) {
       if (pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
@@ -271,7 +271,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // what is connected with the triangle may be inside as well
+        out = Overlap::unknown;  // parts connected with the triangle may be inside
       return out;
     }
     return Overlap::unknown;
@@ -280,7 +280,7 @@ class PieceTest {
   const Scene& scene_;
   ObjectPair objects_;
   RandomNumbers random_{1};
-  std::size_t triangles_;  // of both
+  std::size_t triangles_;  // number of triangles of both objects
   std::size_t tests_ = 0;
 };
 
@@ -340,7 +340,7 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
       if (answer != Overlap::no) return answer;
     }
   }
-  // A point of the surface is left to the pieces.
+  // A point on the other object's surface decides nothing: the pieces decide there.
   Overlap out = Overlap::no;
   for (const bool second : {false, true}) {
     for (const Vec3& point : second ? parts_b : parts_a) {

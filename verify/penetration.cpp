@@ -1,6 +1,6 @@
-// The expanding polytope algorithm on all corners gives the first upper bound: the direction in
-// which the hulls come apart soonest. Then comes the search. All this is in plain doubles; what it
-// finds is proved.
+// The expanding polytope algorithm on all corners gives the first upper bound, along the direction
+// in which the hulls come apart soonest. Then comes the search. All this is in plain doubles; what
+// it finds is proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -38,16 +38,16 @@ class Polytope {
   struct Face {
     std::array<std::uint32_t, 3> corners;
     Vec3 normal;      // of length 1, outward
-    double distance;  // of its plane from the origin; negative if the origin is above it
-    bool final;       // no point of the differences is above it
+    double distance;  // from the origin; negative if the origin is above the plane
+    bool final;       // true if no point of the differences is above it
   };
 
-  /// flat: a point up to this far above a plane counts as in the plane; relative to the size.
-  /// Corners are rounded, so planes of small faces are uncertain far from them.
+  /// flat: a point up to this far above a plane, relative to the size, counts as in the plane.
+  /// Corners are rounded, so the plane of a small face is uncertain far from the face.
   Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
 
-  /// Adds points, always above the face that is nearest to the origin, until that face is final
-  /// (whole: until all faces are), or `steps` points were added.
+  /// Adds points above the face that is nearest to the origin. Ends when this face is final (whole:
+  /// when all faces are), or when `steps` points were added.
   void expand(int steps, bool whole) {
     if (!begin()) faces_.clear();
     while (steps > 0 && !faces_.empty()) {
@@ -72,16 +72,16 @@ class Polytope {
     }
   }
 
-  const Vec3& direction() const { return direction_; }  // of the least overlap
+  const Vec3& direction() const { return direction_; }  // direction of the least overlap
   double overlap() const { return overlap_; }
   const std::vector<Face>& faces() const { return faces_; }
-  /// False if rounding of thin faces left a corner above a face, or kept one from being added.
+  /// False if rounding of thin faces left a corner above a face, or kept a corner from being added.
   bool convex() const { return convex_; }
   const Points& corners() const { return corners_; }
 
  private:
-  // A point of the difference b - a that is farthest in the direction. After a translation of a by
-  // the overlap along the direction, a begins where b ends.
+  // Returns the point of the difference b - a that is farthest in the direction. After a
+  // translation of a by the overlap along the direction, a begins where b ends.
   Vec3 support(const Vec3& direction) {
     const Vec3 out = farthest(*b_, direction) - farthest(*a_, -direction);
     const double overlap = direction.dot(out);
@@ -125,9 +125,10 @@ class Polytope {
     return true;
   }
 
-  // Replaces the faces that see the point by faces to it; does nothing if a new one would be flat.
+  // Replaces the faces that see the point by faces to the point; does nothing if a new face would
+  // be flat.
   void add(const Vec3& point) {
-    std::vector<std::array<std::uint32_t, 2>> edges;  // of faces that see the point, directed
+    std::vector<std::array<std::uint32_t, 2>> edges;  // directed edges of faces that see the point
     std::vector<Face> kept;
     for (const Face& face : faces_) {
       if (face.normal.dot(point - corners_[face.corners[0]]) <= flat_ * scale_) {
@@ -140,7 +141,7 @@ class Polytope {
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    // An edge is used as many times as it occurs more often than its opposite.
+    // Edges of two such faces cancel, so only the edges at the rim get a new face.
     std::ranges::sort(edges);
     for (auto at = edges.begin(); at != edges.end();) {
       const auto [from, to] = *at;
@@ -165,7 +166,7 @@ class Polytope {
   bool convex_ = true;
 };
 
-/// The translations that a polytope certainly holds.
+/// A set of translations after which the objects certainly overlap.
 struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
@@ -195,9 +196,10 @@ Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   return out;
 }
 
-/// The distance from the origin along the ray up to which the covers hold it, in plain doubles.
+/// Returns the distance from the origin along the ray up to which the covers hold the ray, in plain
+/// doubles.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
-  std::vector<std::array<double, 2>> parts;  // of the ray, one in each cover
+  std::vector<std::array<double, 2>> parts;  // the part of the ray in each cover
   for (const Cover& cover : covers) {
     auto& [from, to] = parts.emplace_back(std::array{-kInf, kInf});
     for (const Cover::Side& side : cover.sides) {
@@ -217,8 +219,8 @@ double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   return out;
 }
 
-/// Three directions, perpendicular except for rounding. The first is the normal of most of the
-/// area, the second that of most of the area that is perpendicular to the first.
+/// Returns three directions, perpendicular except for rounding. The first is the normal of most of
+/// the area. The second is the normal of most of the area that is perpendicular to the first.
 std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
   std::vector<std::pair<double, Vec3>> normals;
   for (const ClosedObject* solid : {&a, &b}) {
@@ -259,7 +261,7 @@ class Search {
         64 * kU * (a.largest() + b.largest());
   }
 
-  /// Lowers the upper bound if the translation, made a little longer, separates.
+  /// Lowers the upper bound if the translation, made a little longer, separates the objects.
   bool try_translation(const Vec3& t) {
     if (failures_ == 0 || !t.allFinite()) return false;
     const double length = t.norm();
@@ -275,10 +277,10 @@ class Search {
     return true;
   }
 
-  /// Divides the ball of translations shorter than the upper bound into parts, until all parts that
-  /// are nearer than the lower bound are settled.
+  /// Divides the ball of translations shorter than the upper bound into parts, until all parts
+  /// nearer than the lower bound are settled.
   void search() {
-    constexpr double kWork = 2e6;  // sides of covers that are examined
+    constexpr double kWork = 2e6;  // about this many sides of covers are examined
     constexpr double kClose = 0.98;
     std::priority_queue<Part, std::vector<Part>, std::greater<>> parts;
     parts.push({0, Vec3::Zero(), Vec3::Constant(out_.hi * (1 + 1e-9))});
@@ -303,13 +305,13 @@ class Search {
         if (child.distance < out_.hi) parts.push(child);
       }
     }
-    out_.lo = out_.hi * (1 - 1e-11);  // all is settled
+    out_.lo = out_.hi * (1 - 1e-11);  // all parts are settled
   }
 
  private:
   struct Part {
-    double distance;    // from the origin to its nearest point
-    Vec3 middle, half;  // of its box, along the axes
+    double distance;    // distance from the origin to the nearest point of the part
+    Vec3 middle, half;  // of the part's box, along the axes
     bool operator>(const Part& other) const { return distance > other.distance; }
   };
 
@@ -324,8 +326,8 @@ class Search {
     });
   }
 
-  /// The axis along which the part extends beyond the cover that holds most of it; -1 if that cover
-  /// holds all of it.
+  /// Returns the axis along which the part extends beyond the cover that holds most of it; -1 if a
+  /// cover holds all of the part.
   int axis_to_divide(const Part& part) {
     const Vec3 middle = point_at(part.middle);
     const double reach = middle.cwiseAbs().maxCoeff() + part.half.sum();
@@ -356,12 +358,12 @@ class Search {
   std::vector<Cover> covers_;
   std::array<Vec3, 3> axes_;
   Penetration& out_;
-  int failures_;     // failures that are still allowed
-  double room_ = 0;  // bound of the error by rounding, and by cores that are a little too small
+  int failures_;     // this many failures are still allowed
+  double room_ = 0;  // bound of rounding errors and of the shrinking of cores
   double work_ = 0;
 };
 
-/// The first upper bound: a translation that moves the convex hulls of all corners apart.
+/// Finds the first upper bound: a translation that moves the convex hulls of all corners apart.
 void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& out) {
   Polytope hull(a.corners(), b.corners(), 1e-14);
   hull.expand(200, false);
@@ -379,7 +381,8 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
 }
 
 /// Tries translations of the length limit.most along limit.ways, forwards and backwards. While one
-/// separates, notes it and tries a quarter of its length. Ends when out.hi is at most limit.most.
+/// separates the objects, notes it and tries a quarter of its length. Ends when out.hi <=
+/// limit.most.
 void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimit& limit,
                    Penetration& out) {
   for (const Vec3& way : limit.ways) {
@@ -396,7 +399,7 @@ void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimi
   }
 }
 
-/// Points inside both objects and far from their surfaces, the farthest first; then the starts.
+/// Returns points inside both objects, those far from the surfaces first; then the starts.
 Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                    const Vec3& translation) {
   constexpr std::size_t kMost = 6, kStarts = 8;
@@ -423,7 +426,8 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   const std::size_t most = std::min(found.size(), kMost);
   for (std::size_t k = 0; k < most; ++k) {
     Deep& d = found[k];
-    // A step away from the nearest point that is shorter than the distance to it stays inside.
+    // A step away from the nearest point stays inside if it is shorter than the distance to that
+    // point.
     for (int step = 0; step < 20; ++step) {
       const Deep next = deep(d.point + (step % 2 == 0 ? 0.8 : 0.2) * (d.point - d.nearest));
       if (next.distance() > d.distance()) d = next;
@@ -439,7 +443,7 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
 }  // namespace
 
 // True if products of four lengths are normal numbers, for lengths down to 2^-50 of the object's
-// extent. Squares of cross products are such products, and their roots make normals of length 1. If
+// extent. Squares of cross products are such products; their roots make normals of length 1. If
 // false, no lower bound of the depth is computed.
 bool has_normal_products(const ClosedObject& solid) {
   const Vec3 extent = solid.box().hi - solid.box().lo;
@@ -448,7 +452,7 @@ bool has_normal_products(const ClosedObject& solid) {
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads, const std::optional<DepthLimit>& limit) {
-  // Work for each pair of objects. The larger ones get fewer cores, so that the time is about that
+  // Work for each pair of objects. Larger objects get fewer cores, so that the time is about that
   // of finding their pairs of triangles.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
   const std::size_t most_cores = small ? 48 : 10, most_pairs = small ? 256 : 64;
@@ -459,8 +463,8 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   if (limit && out.hi <= limit->most) return out;
   const Points seeds = out.hi < kInf ? deep_points(a, b, starts, out.translation) : Points();
   if (limit) {
-    // If a point inside both is farther than `most` from both surfaces, it is a common point after
-    // each translation by at most `most`. Then no translation is tried, which only saves time.
+    // A point inside both objects that is farther than `most` from both surfaces stays a common
+    // point after each translation by at most `most`. Then trying translations is useless.
     const auto deeper = [&](const ClosedObject& solid, const Vec3& p) {
       return solid.has(p) && (solid.nearest(p) - p).norm() > limit->most;
     };

@@ -1,20 +1,20 @@
-// Bounds of the penetration depth of two closed objects: the length of the shortest translation of
-// one of them after which their insides have no point in common (Cameron and Culley, Determining
-// the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
+// Bounds of the penetration depth of two closed objects. The depth is the length of the shortest
+// translation of one object after which the insides have no point in common (Cameron and Culley,
+// Determining the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
 //
 // Upper bound: a translation after which the insides are certainly apart (separates()).
 //
-// Lower bound: from cores (verify/convex_core.h). If A is a core of a and B one of b, the objects
-// overlap after each translation in the polytope of the differences B - A. A search divides the
-// ball of translations shorter than the upper bound into boxes. A box is settled if one polytope
-// holds it. The depth is at least the distance of the nearest box that is not settled. As the boxes
-// become smaller, their middles are tried as translations.
+// Lower bound: from cores (verify/convex_core.h). Let A be a core of a and B a core of b. The
+// objects overlap after each translation in the polytope of the differences B - A. A search divides
+// the ball of translations shorter than the upper bound into boxes. A box is settled if one
+// polytope holds the box. The depth is at least the distance of the nearest box that is not
+// settled. As the boxes become smaller, their middles are tried as translations.
 //
 // The expanding polytope algorithm (van den Bergen, Proximity Queries and Penetration Depth
 // Computation on 3D Game Objects, 2001) finds a polytope as a closed surface of triangles: each
 // edge is passed equally often in both directions. From a point below the planes of all triangles,
-// all of them are seen the same way round, so its winding number is not 0. So the point is inside
-// the convex hull of the corners, whether or not the surface is convex.
+// all triangles are seen the same way round, so the point's winding number is not 0. So the point
+// is inside the convex hull of the corners, whether or not the surface is convex.
 //
 // World units. Preconditions of verify/exact.h.
 #pragma once
@@ -27,9 +27,9 @@
 namespace farcull {
 
 struct Penetration {
-  double lo = 0;  // the depth is at least this
-  double hi = 0;  // the depth, and the length of the translation, are at most this
-  Vec3 translation = Vec3::Zero();  // of object a; the insides are then apart
+  double lo = 0;                    // the depth is at least this
+  double hi = 0;                    // the depth and the length of the translation are at most this
+  Vec3 translation = Vec3::Zero();  // of object a; after it the insides are apart
 };
 
 /// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? ways: unit
@@ -39,10 +39,10 @@ struct DepthLimit {
   std::span<const Vec3> ways = {};
 };
 
-/// The bounds of the depth of a and b. starts: points inside both or near such points, such as
-/// common points of their surfaces. threads: as in for_each_shared(); changes no answer. With a
-/// limit, the search ends when its question is decided; if hi > most, no proof was found that the
-/// depth is at most `most`.
+/// Returns bounds of the depth of a and b. starts: points inside both objects or near such points,
+/// such as common points of their surfaces. threads: as in for_each_shared(); changes no answer.
+/// With a limit, the search ends when the limit's question is decided; if hi > most, no proof was
+/// found that the depth is at most `most`.
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads = 1, const std::optional<DepthLimit>& limit = {});
 

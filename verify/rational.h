@@ -1,4 +1,4 @@
-// Exact arithmetic for checks of rounded geometry: a double or float converts to a rational
+// Exact arithmetic for checks of rounded geometry. A double or float converts to a rational
 // exactly, so a claimed bound is decided, not estimated. Also random numbers that are the same on
 // every machine.
 #pragma once
@@ -22,14 +22,14 @@ inline Q3 exact(const Vec3& p) { return {Q(p[0]), Q(p[1]), Q(p[2])}; }
 using closest::cross;
 using closest::dot;
 using closest::minus;
-/// a + t (b - a)
+/// Returns a + t (b - a).
 inline Q3 between(const Q3& a, const Q3& b, const Q& t) {
   Q3 out;
   for (int i = 0; i < 3; ++i) out[i] = a[i] + t * (b[i] - a[i]);
   return out;
 }
 
-/// The part of a convex polygon where sign * p[axis] <= sign * bound.
+/// Returns the part of a convex polygon where sign * p[axis] <= sign * bound.
 inline std::vector<Q3> clipped(const std::vector<Q3>& polygon, int axis, int sign, const Q& bound) {
   std::vector<Q3> out;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -49,7 +49,7 @@ class Draws : public RandomNumbers {
   bool coin() { return (word() >> 33) & 1; }
   double uniform(double lo, double hi) { return between(lo, hi); }
   double sign() { return coin() ? 1 : -1; }
-  /// A random sign and magnitude 2^lo .. 2^hi, the exponent uniform.
+  /// Returns a number of random sign and magnitude 2^e, where e is uniform in lo .. hi.
   double scaled(double lo, double hi) { return sign() * std::exp2(uniform(lo, hi)); }
   Vec3 cube(double half) {
     return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};

@@ -1,5 +1,5 @@
-// Bounds on the rounding errors of the doubles that the verification computes: in the filters
-// (verify/filter.h), and in the comparison of closest points (verify/nearest_pair.cpp).
+// Bounds on rounding errors of doubles in verification: in the filters (verify/filter.h), and in
+// the comparison of closest points (verify/nearest_pair.cpp).
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@ namespace farcull {
 
 enum class Triage : std::uint8_t { no, yes, unknown };
 
-/// The proved bounds (docs/proofs.md). A type, so that tests can show that smaller bounds give
-/// wrong answers.
+/// The proved bounds (docs/proofs.md). They are a type, so that tests can show that smaller bounds
+/// give wrong answers.
 struct FilterBounds {
-  /// Error of a determinant, relative to its permanent, and of a projection.
+  /// Error of a determinant or of a projection, relative to the permanent (the sum of magnitudes).
   static constexpr double side = 9 * 0x1p-53;
   /// Error of the product of two normals.
   static constexpr double normals = 12 * 0x1p-53;
@@ -19,17 +19,17 @@ struct FilterBounds {
   static constexpr double point = 64 * 0x1p-53;
   /// Error of a gap along a direction, relative to the projected magnitudes.
   static constexpr double gap = 16 * 0x1p-53;
-  /// Error by underflow; times 1 + the sum of the last factors.
+  /// Error by underflow, to be multiplied by 1 + the sum of the last factors.
   static constexpr double absolute = 0x1p-1000;
 };
 
-/// For an upper bound of the length of a normal: the error of the length, relative to the sum of
-/// the normal's magnitudes, and the rounding of the bound.
+/// For an upper bound of the length of a normal. kNormalLength: error of the length, relative to
+/// the sum of the normal's magnitudes. kNormalRounding: rounding of the bound.
 constexpr double kNormalLength = 0x1p-50;
 constexpr double kNormalRounding = 0x1p-49;
-/// The least square of a length whose root is accurate; smaller squares are replaced by it.
+/// Smaller squares of lengths have inaccurate roots, so this replaces them.
 constexpr double kLeastSquare = 0x1p-900;
-/// Rounding error of a clearance times a length.
+/// Rounding error of a clearance times a length, relative to the product.
 constexpr double kNeededRounding = 0x1p-50;
 
 // ---- bounds for SamePoints (verify/nearest_pair.cpp)
@@ -38,9 +38,9 @@ constexpr double kNeededRounding = 0x1p-50;
 constexpr double kTie = 8 * 0x1p-53;
 /// Error from the rounding of the two points of w, relative to the magnitudes of their coordinates.
 constexpr double kTiePoints = 2 * 0x1p-53;
-/// The same error if a coordinate is subnormal.
+/// The error of kTiePoints if a coordinate is subnormal.
 constexpr double kTieSubnormal = 0x1p-1070;
-/// Underflow of products.
+/// Error by underflow of products.
 constexpr double kTieAbsolute = 0x1p-1000;
 
 }  // namespace farcull

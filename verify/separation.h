@@ -1,8 +1,8 @@
-// Tests in doubles, for the accounting of distances, whether boxes or triangles are farther apart
-// than a limit. Each is true only if this is proved with all roundings.
+// Tests in doubles whether boxes or triangles are farther apart than a limit, for the accounting of
+// distances. Each test is true only if this is proved with all roundings.
 //
 // u = 2^-53 is the unit roundoff. Sums and differences of doubles have a relative error of at most
-// u, also if the result is subnormal. Products and quotients have a relative error of at most u,
+// u, even if the result is subnormal. Products and quotients have a relative error of at most u,
 // plus an absolute error below 2^-1074 if the result is subnormal.
 #pragma once
 
@@ -23,9 +23,9 @@ using Bounds = BoundsTree::Bounds;
 ///
 /// A gap along an axis is one rounded difference. Rounding is monotone, so a gap above the limit is
 /// proved. The sum of squares has three differences (each factor 1 + u, squared), three products
-/// and two sums, and the root one rounding: a relative error below 8 u in all if the squares are
-/// normal numbers. The root is used only if it is so large that the loss to subnormal squares is
-/// far below u of it, and if nothing overflows.
+/// and two sums. The root has one rounding. The relative error is below 8 u in all if the squares
+/// are normal numbers. The root is used only if nothing overflows, and if it is so large that the
+/// loss to subnormal squares is far below u of the root.
 inline bool farther(const Bounds& a, const Bounds& b, double limit) {
   double squares = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -37,17 +37,17 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
   return std::sqrt(squares) * (1 - 16 * kU) > limit;
 }
 
-/// True only if all points of the two triangles, or convex hulls of other points, are farther apart
-/// than `limit` (>= 0, finite): there are two parallel planes farther apart than the limit, with
-/// all of a before the first and all of b beyond the second.
+/// True only if all points of the two triangles (or of two other convex hulls) are farther apart
+/// than `limit` (>= 0, finite). Proof: two parallel planes are farther apart than the limit, all of
+/// a is before the first plane, and all of b is beyond the second plane.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
 /// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any direction
-/// may be tried, since for each one the gap is bounded with all its roundings.
+/// may be tried, since the gap is bounded with all roundings.
 template <class Points, class Others>
 bool farther_by_planes(const Points& a, const Others& b, double limit) {
   constexpr int kSteps = 24;
-  // The corners relative to one of them. Each coordinate of y is one rounded difference.
+  // Returns p relative to a corner of a. Each coordinate of y is one rounded difference.
   const auto y = [&](const Vec3& p) -> Vec3 { return p - a[0]; };
   Vec3 near = Vec3::Zero();
   for (const Vec3& p : b) near += y(p) / static_cast<double>(std::size(b));
@@ -69,10 +69,10 @@ bool farther_by_planes(const Points& a, const Others& b, double limit) {
       magnitude = std::max(magnitude, n.cwiseAbs().dot(t.cwiseAbs()));
       if (const double of_t = n.dot(t); of_t < t_least) t_least = of_t, t_at = t;
     }
-    // Each of the three terms of n . y has the rounding of y and of the product, then two sums. So
-    // either side is off by at most 4.01 u of `magnitude` and the loss to subnormal products. The
-    // difference of the sides is rounded once more, 2 u of `magnitude`. The length is off by 4 u of
-    // itself, the quotient by 1 u.
+    // Each of the three terms of n . y has the rounding of y and of the product; then come two
+    // sums. So s_most and t_least are off by at most 4.01 u of `magnitude` and the loss to
+    // subnormal products. Their difference is rounded once more, 2 u of `magnitude`. The length is
+    // off by 4 u of itself, the quotient by 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
     if (!std::isfinite(magnitude)) return false;
     if (gap > 0x1p-900 && gap / n.norm() * (1 - 16 * kU) > limit) return true;

@@ -1,5 +1,5 @@
-// The exact interval of a solid, as its floats define it, along a line in the direction of z. A
-// kernel's answer must contain this interval.
+// The exact interval of a solid along a line in the direction of z. The floats of the Solid define
+// it exactly. A kernel's answer must contain this interval.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,8 @@ struct Interval {
   Number lo, hi;
 };
 
-/// The solid's interval along the line, without rounding; none if the line misses the solid.
+/// Returns the solid's interval along the line, without rounding; none if the line misses the
+/// solid.
 inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid& s) {
   Interval<Q> z{Q(s[0][3]), Q(s[4][0])};
   for (int i = 1; i <= 3; ++i) {
@@ -43,9 +44,9 @@ inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid
   return z;
 }
 
-/// The interval in doubles, a little too large; none if the line certainly misses. Products of
-/// floats are exact in double. Differences and sums are off by 2^-53 of the terms' sizes each, and
-/// 2^-49 is more than all of these errors together.
+/// Returns the interval in doubles, a little too large; none if the line certainly misses the
+/// solid. Products of floats are exact in double. Each difference and sum is off by 2^-53 of the
+/// sizes of its terms. 2^-49 is more than all of these errors together.
 inline std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& s) {
   Interval<double> z{s[0][3], s[4][0]};
   for (int i = 1; i <= 3; ++i) {
@@ -70,9 +71,9 @@ inline std::optional<Interval<double>> outer_interval(float cx, float cy, const 
 
 inline float number(double x) { return static_cast<float>(x); }
 
-/// A solid whose floats are drawn directly, not computed from a triangle. Its slabs may be nearly
-/// parallel to the line, thin or thick, with zeros and denormals in their normals, and their middle
-/// may be far away. The line passes through the solid or close to its border.
+/// Returns a solid whose floats are drawn directly, not computed from a triangle. Its slabs may be
+/// nearly parallel to the line, thin or thick, with zeros and denormals in their normals. Their
+/// middle may be far away. The line passes through the solid or close to its border.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;
@@ -101,7 +102,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   double mid = s[0][2] + random.scaled(-6, 8);
   s[0][3] = number(mid - thick);
   s[4][0] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(4) == 0) {  // no cuts: the slabs alone decide
+  if (random.below(4) == 0) {  // no cuts: only the slabs decide
     s[0][3] = number(-2 * far);
     s[4][0] = number(2 * far);
   }
@@ -114,10 +115,10 @@ namespace farcull::minkowski_line {
 
 // A line along z and a triangle fattened by a ball, as the floats of a Solid define it
 // (offsets/minkowski.glsl). Let m be the solid's centre, and v0, v1, v2 its corners relative to m.
-// Let d = c - m in the image, where the line is at c. The ball about a point p of the triangle cuts
+// Let the line be at c in the image, and d = c - m. The ball about a point p of the triangle cuts
 // the line in the chord from m.z + p.z - root to m.z + p.z + root, root = sqrt(r^2 - |d - p.xy|^2).
 // The solid's interval is the hull of all chords, so a kernel's answer has to contain the chord of
-// every p. Rationals decide this wherever long doubles leave a doubt.
+// every p. Long doubles decide this; rationals decide where they leave a doubt.
 
 using rational::Q;
 using Real = long double;
@@ -138,7 +139,7 @@ inline Weights weights(Real w1, Real w2) {
   return {first, grid(std::clamp<Real>(w2, 0, 1 - first))};
 }
 
-/// The point at fraction t of an edge.
+/// Returns the point at fraction t of an edge.
 inline Weights on_edge(int edge, Real t) {
   t = weights(t, 0).w1;
   return edge == 0 ? Weights{t, 0} : edge == 1 ? Weights{1 - t, t} : Weights{0, 1 - t};
@@ -146,10 +147,10 @@ inline Weights on_edge(int edge, Real t) {
 
 /// The part of the line in the ball about one point.
 struct Chord {
-  Real square;    // of its half-length; negative: the line misses the ball
-  Real lo, hi;    // depths of its ends if square >= 0
+  Real square;    // square of the half-length; negative: the line misses the ball
+  Real lo, hi;    // depths of the chord's ends if square >= 0
   Real doubt;     // bounds the error of lo and hi
-  Real no_chord;  // below -no_chord, `square` proves that the line misses the ball
+  Real no_chord;  // if square < -no_chord, the line certainly misses the ball
 };
 
 class Line {
@@ -166,8 +167,8 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// The chord of a point. The error bound is 2^-56 of the largest coordinates (flat: in the image,
-  /// deep: along the depth), since a dozen operations err by 2^-64 of them each.
+  /// Returns the chord of a point. The error bound is 2^-56 of the largest coordinates (flat: in
+  /// the image, deep: along the depth), since each of a dozen operations errs by 2^-64 of them.
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -175,8 +176,8 @@ class Line {
     const Real x = p[0] - dx_, y = p[1] - dy_;
     Chord out{};
     out.square = r_ * r_ - x * x - y * y;
-    // Let x and y be the differences from the line in the image. Where `square` is near 0, they are
-    // at most r. Their errors are at most 2^-56 of `flat`.
+    // x and y are the differences from the line in the image. Where `square` is near 0, |x| and |y|
+    // are at most r. Their errors are at most 2^-56 of `flat`.
     const Real e = 0x1p-56L * flat_;
     out.no_chord = 8 * e * (r_ + e) + 0x1p-56L * r_ * r_ + 0x1p-300L;
     const Real root = std::sqrt(std::max<Real>(out.square, 0));
@@ -190,7 +191,7 @@ class Line {
 
   /// Finds the place where the line enters the solid (sign -1) or leaves it (sign 1): the best of
   /// the three corners, the contacts with the cylinders of the three edges, and the contact with
-  /// the face. `depth` receives the depth of the place; false: the line misses.
+  /// the face. Writes the place's depth to `depth`. Returns false if the line misses the solid.
   bool contact(int sign, Weights& best, Real& depth) const {
     bool found = false;
     const auto offer = [&](const Weights& w) {
@@ -228,7 +229,7 @@ class Line {
     return found;
   }
 
-  /// The distance in the image from the line to the triangle (0 inside).
+  /// Returns the distance in the image from the line to the triangle; 0 if the line is inside.
   Real distance() const {
     Real nearest = HUGE_VALL;
     int turns[3];
@@ -259,7 +260,7 @@ inline Answer answer(Kernel kernel, float cx, float cy, const Solid& solid) {
   return a;
 }
 
-/// Whether the chord of p, cut by zlo and zhi, reaches beyond the answer; nothing is rounded.
+/// True if the chord of p, cut by zlo and zhi, extends beyond the answer. Nothing is rounded.
 inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const Answer& answer) {
   const auto rational = [](Real x) {
     const double high = static_cast<double>(x);
@@ -281,8 +282,8 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
     if (!answer.hit || *z < Q(answer.entry) || *z > Q(answer.exit)) return true;
   }
   if (!answer.hit) return false;
-  // If an end of the answer lies strictly inside the chord and the cuts, the chord reaches beyond
-  // it.
+  // If an end of the answer lies strictly inside the chord and the cuts, the chord extends beyond
+  // the answer.
   const auto strictly_inside = [&](const Q& z) {
     const Q off = z - p[2];
     return off * off < square;
@@ -292,7 +293,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
          (exit < zhi && exit >= zlo && strictly_inside(exit));
 }
 
-/// True if long doubles leave a doubt whether the answer contains the chord. False is certain.
+/// False only if the answer certainly contains the chord. Computed in long doubles.
 inline bool doubtful(const Solid& s, const Chord& c, const Answer& answer) {
   if (c.square < -c.no_chord) return false;
   if (c.hi + c.doubt < s[0][3] || c.lo - c.doubt > s[2][3]) return false;

@@ -1,10 +1,10 @@
 // Squared distances as fractions of integers, compared by cross-multiplying, and rounded once.
 //
 // Rounding. A quotient or a root is first cut off to an integer of at least 55 bits, times a power
-// of two. One more bit is appended, which is 1 iff something was cut off. A double keeps 53 bits,
-// so at least two bits follow them, and then the appended bit. So the long number lies on the same
-// side of every double, and of every middle between two doubles, as the exact number. Therefore
-// rounding the long number gives the rounded exact number.
+// of two. Then one more bit is appended, which is 1 iff something was cut off. A double keeps 53
+// bits, so at least three bits follow. So the long number lies on the same side of every double,
+// and of every middle between two doubles, as the exact number. Therefore both are rounded to the
+// same double.
 #include "verify/squared_distance.h"
 
 #include <cmath>
@@ -14,10 +14,10 @@ namespace farcull {
 namespace {
 
 constexpr long kDigits = 53;
-constexpr long kLeastExponent = -1074;  // of the last bit of a double
+constexpr long kLeastExponent = -1074;  // exponent of the last bit of the least double
 constexpr long kKept = kDigits + 2;
 
-/// x 2^k, cut off where k < 0.
+/// Returns x 2^k, cut off to an integer.
 mpz_class shifted(const mpz_class& x, long k) {
   mpz_class out;
   if (k >= 0) {
@@ -28,7 +28,7 @@ mpz_class shifted(const mpz_class& x, long k) {
   return out;
 }
 
-/// |num| 2^k / den, cut off to an integer; sets `more` if something was cut off.
+/// Returns |num| 2^k / den, cut off to an integer. Sets `more` to whether something was cut off.
 mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool& more) {
   mpz_class quotient, rest;
   const mpz_class n = shifted(num, std::max(k, 0L)), d = shifted(den, std::max(-k, 0L));
@@ -37,7 +37,7 @@ mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool&
   return quotient;
 }
 
-/// 2 x with a last bit `more`, which makes the magnitude larger.
+/// Returns 2 x with `more` as its last bit, which makes the magnitude larger.
 mpz_class with_last_bit(const mpz_class& x, bool more, int sign) {
   const mpz_class magnitude = 2 * abs(x) + (more ? 1 : 0);
   return sign < 0 ? mpz_class(-magnitude) : magnitude;
@@ -51,8 +51,8 @@ double rounded(const mpz_class& m, long exponent) {
   const long last = std::max(bits_of(magnitude) + exponent - kDigits, kLeastExponent);
   const long drop = last - exponent;
   if (drop > 0) {
-    // Adds half of the last bit that is kept, and cuts off the sum. Of two equally near numbers the
-    // even one is kept.
+    // Adds half of the last kept bit, and cuts off the sum. Of two equally near numbers the even
+    // number is kept.
     const auto k = static_cast<mp_bitcnt_t>(drop);
     const bool middle = mpz_scan1(magnitude.get_mpz_t(), 0) == k - 1;
     mpz_class sum = magnitude + shifted(1, drop - 1);

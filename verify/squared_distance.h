@@ -1,6 +1,6 @@
 // Exact arithmetic in integers: doubles as integers of one scale, the integers behind a
-// SquaredDistance, and rounding of fractions to doubles. For the sources of verify/closest.h and
-// verify/contact.h and their tests alone.
+// SquaredDistance, and rounding of fractions to doubles. Only sources of verify/closest.h and
+// verify/contact.h and their tests use this.
 #pragma once
 
 #include <gmpxx.h>
@@ -14,31 +14,31 @@
 
 namespace farcull {
 
-/// num / den times 2^exponent. Not in lowest terms: those take time, and only text() needs them.
+/// num / den times 2^exponent. Not in lowest terms, which take time and only text() needs.
 struct SquaredDistance::Value {
   mpz_class num = 0;  // >= 0
   mpz_class den = 1;  // > 0
   long exponent = 0;
 };
 
-/// m times 2^exponent, rounded to the nearest double, to the even one of two equally near doubles.
-/// Subnormal results are rounded once as well. Results beyond the largest double become infinity,
-/// as IEEE 754 rounds. Never -0.0.
+/// Returns m times 2^exponent, rounded to the nearest double, ties to even. Subnormal results are
+/// rounded once as well. Results beyond the largest double become infinity. Never -0.0.
 double rounded(const mpz_class& m, long exponent);
 
-/// num / den times 2^exponent, den > 0, rounded in the same way.
+/// Returns num / den times 2^exponent, rounded like rounded(). Precondition: den > 0.
 double rounded_quotient(const mpz_class& num, const mpz_class& den, long exponent);
 
-/// The root of num / den times 2^exponent, num >= 0 and den > 0, rounded in the same way.
+/// Returns the root of num / den times 2^exponent, rounded like rounded(). Preconditions: num >= 0,
+/// den > 0.
 double rounded_root(const mpz_class& num, const mpz_class& den, long exponent);
 
-/// The point of the coordinates x / w times 2^exponent, w > 0, each rounded in the same way.
+/// Returns the point with coordinates x / w times 2^exponent, each rounded like rounded(). w > 0.
 inline Vec3 rounded_point(const std::array<mpz_class, 3>& x, const mpz_class& w, long exponent) {
   return {rounded_quotient(x[0], w, exponent), rounded_quotient(x[1], w, exponent),
           rounded_quotient(x[2], w, exponent)};
 }
 
-/// How many bits the magnitude has; 1 for 0.
+/// Returns the number of bits of the magnitude; 1 for 0.
 inline long bits_of(const mpz_class& x) {
   return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
 }
@@ -46,14 +46,14 @@ inline long most_bits(const std::array<mpz_class, 3>& x) {
   return std::max({bits_of(x[0]), bits_of(x[1]), bits_of(x[2])});
 }
 
-/// The exponent of the lowest bit of x that is 1. Precondition: x is not 0.
+/// Returns the exponent of the lowest bit of x that is 1. Precondition: x is not 0.
 inline int lowest_bit(double x) {
   int exponent = 0;
   const auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
   return exponent - 53 + __builtin_ctzll(static_cast<std::uint64_t>(digits));
 }
 
-/// x times 2^-exponent. Precondition: this is an integer.
+/// Returns x times 2^-exponent. Precondition: the product is an integer.
 inline mpz_class integer_of(double x, int exponent) {
   const double whole = std::ldexp(x, -exponent);
   if (std::isfinite(whole)) return mpz_class(whole);

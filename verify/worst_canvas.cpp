@@ -1,4 +1,4 @@
-// A pixel counts as covered only if it is covered with all roundings that the device assumptions
+// A pixel counts as covered only if it is covered for all roundings that the device assumptions
 // allow. Its depths are the worst that these roundings give.
 #include "verify/worst_canvas.h"
 
@@ -21,10 +21,10 @@ struct Range {
   double lo, hi;
 };
 
-// How far a window coordinate can be from the exact one. A coordinate is multiplied by 2/viewport,
-// divided by w = 1, multiplied by viewport/2, added to the centre, then snapped. A1 bounds the
-// error over the whole viewport, so every corner may be as far off as a corner at the rim, which
-// has the largest intermediate results.
+// Returns how far a window coordinate can be from the exact coordinate. A coordinate is multiplied
+// by 2/viewport, divided by w = 1, multiplied by viewport/2, added to the centre, then snapped. A1
+// bounds the error over the whole viewport. So every corner may be as far off as a corner at the
+// rim, which has the largest intermediate results.
 double displacement(int viewport, int subpixel_bits) {
   const double half = 0.5 * viewport;
   double x = half;
@@ -42,8 +42,8 @@ double cross(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// True where c is on the inner side of the edge for every choice of its ends: the product is linear
-// in each coordinate, so its least value is at corners of the ranges.
+// True if c is on the inner side of the edge for every choice of the edge's ends. The product is
+// linear in each coordinate, so its least value is at corners of the ranges.
 bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, double orientation) {
   for (int bits = 0; bits < 16; ++bits) {
     const Point from = {bits & 1 ? a[0].hi : a[0].lo, bits & 2 ? a[1].hi : a[1].lo};
@@ -53,10 +53,9 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
   return true;
 }
 
-// As surely_inside(), for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x - a.x)
-// in floats. Each operation is off by half a unit in its last place, to the worse side: one for
-// each factor, and one for the product. The comparison is exact. The doubles here are off by only
-// 2^-53 of these products.
+// Like surely_inside(), for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x -
+// a.x) in floats. Each factor and each product is off by half a unit in its last place, to the
+// worse side. The comparison is exact. The doubles here are off by only 2^-53 of these products.
 bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
   constexpr double kHalfUnit = 0x1p-24;
   const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
@@ -65,14 +64,14 @@ bool surely_beside(const float* a, const float* b, const Point& c, double orient
   return orientation * (left - right) > lost;
 }
 
-// A hash of the word.
+// Returns a hash of the word.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 31) * 0x9e3779b97f4a7c15u;
   x = (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
   return x ^ x >> 32;
 }
 
-// First and last index of the pixels whose centre is in [lo, hi].
+// Returns the first and last index of the pixels whose centre is in [lo, hi].
 std::pair<int, int> pixels(double lo, double hi, int size) {
   return {std::max(0, static_cast<int>(std::ceil(lo + 0.5 * size - 0.5))),
           std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
@@ -108,20 +107,20 @@ void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
 }
 
-// The value in the depth buffer for a depth if all programs round to nearest. With 24 bits it is
-// cut off to a multiple of 2^-24.
+// Returns the value in the depth buffer for a depth if all programs round to nearest. With 24 bits
+// the value is cut off to a multiple of 2^-24.
 float WorstCanvas::held(float z) const {
   const float mapped = std::min(std::max(0.5f + z * depth_scale(window_), 0.25f), 0.75f);
   if (options_.depth_bits == 32) return mapped;
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// The value for a depth in the program that stores, or in the program that asks. Each rounding goes
-// up or down, to an end of the range that glsl_worst computes.
+// Returns the value for a depth in the program that stores or asks (verb). Each rounding goes up or
+// down, to an end of the range that glsl_worst computes.
 float WorstCanvas::held(float z, Verb verb) const {
   if (options_.exact_samples) return held(z);
   const bool ask = verb == Verb::ask;
-  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // a bit for each rounding: 1 is down
+  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // one bit for each rounding: 1 rounds down
   if (options_.rounding_seed != 0)
     down =
         mixed(mixed(options_.rounding_seed * 2 + (ask ? 1 : 0)) ^ std::bit_cast<std::uint32_t>(z));
@@ -132,7 +131,7 @@ float WorstCanvas::held(float z, Verb verb) const {
   if (ask) depth = end(Worst(depth) + Worst(options_.asked_behind));
   if (options_.depth_bits == 32) return depth;
   constexpr double kMost = 0x1p24 - 1;  // OpenGL 4.6, 2.3.5.2: either neighbour of the product
-  const double steps = depth * kMost;   // exact, of 48 bits
+  const double steps = depth * kMost;   // exact: at most 48 bits
   return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }
 
@@ -158,8 +157,8 @@ bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, doub
   return true;
 }
 
-// Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth; held
-// is the value that the depth buffer stores for it, or compares with its own.
+// Calls visit(pixel, px, held) for each fragment of an element. px is the entry or exit depth. held
+// is the value that the depth buffer stores for px, or compares with its own value.
 void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const auto& visit) const {
   if (element == kEverywhere) {
     const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;

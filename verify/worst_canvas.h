@@ -1,6 +1,6 @@
-// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more:
-// of all results that these allow, it takes the one that is worst for culling. It models the steps
-// that a coordinate takes through a rasterizer, and does not know the budget's terms.
+// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more.
+// Of all results that the assumptions allow, it takes the worst result for culling. It models the
+// steps that a coordinate takes through a rasterizer. It does not know the budget's terms.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace farcull {
 
 struct WorstCanvasOptions {
   int subpixel_bits = 8;
-  /// 32: depths are stored as computed floats; 24: they are rounded to multiples of 2^-24.
+  /// 32: depths are stored as computed floats. 24: depths are rounded to multiples of 2^-24.
   int depth_bits = 32;
   int max_resolution = 16370;
   /// True: the canvas keeps the guarantees of core/native/canvas.h, and no more. Corners are not
@@ -22,22 +22,22 @@ struct WorstCanvasOptions {
   /// An asked depth lies this far behind D(exit), the mapped exit depth, as on a GL device. Tests
   /// set less, to show that culling then misses pairs.
   float asked_behind = kAskedBehind;
-  /// 0: each program rounds depths as badly as it may: stored depths up, asked depths down.
-  /// Else: the seed by which each program, independently, rounds each depth up or down.
+  /// 0: each program rounds depths the worst way: stored depths up, asked depths down. Otherwise a
+  /// seed: each program rounds each depth up or down at random.
   std::uint64_t rounding_seed = 0;
 };
 
 /// How the canvas draws:
 /// - Proxies (A1 to A4). A pixel gets a fragment only if its centre is strictly inside the
-/// quadrilateral for every choice of corners that the roundings of the vertex stage, the division
-/// by w, the viewport transform and snapping allow.
+///   quadrilateral for every choice of corners that these roundings allow: the vertex stage, the
+///   division by w, the viewport transform and snapping.
 /// - The solid, by SolidProgram::interval_worst. A fragment is discarded if any rounding discards
-/// it. The entry is as late, and the exit as early, as any rounding makes them.
-/// - Depths (A4, A5). Storing and asking are two programs. Each rounds the depths, and converts
-/// them to 24 bits, in its own direction; with exact_samples both round to nearest, as the native
-/// canvas does. A query sees exactly what passes (A6).
-/// - Triangles (fixed depth). They are sampled at pixel centres without displacement, and both
-/// programs round depths in the same direction: the assumptions promise nothing about triangles.
+///   it. The entry is as late, and the exit as early, as any rounding makes them.
+/// - Depths (A4, A5). Storing and asking are two programs. Each program rounds the depths, and
+///   converts them to 24 bits, in its own direction. With exact_samples both programs round to
+///   nearest, as the native canvas does. A query sees exactly what passes (A6).
+/// - Triangles (fixed depth) are sampled at pixel centres without displacement. Both programs round
+///   depths in the same direction. The assumptions promise nothing about triangles.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});
@@ -58,7 +58,7 @@ class WorstCanvas final : public Canvas {
   WorstCanvasOptions options_;
   RasterLimits limits_;
   Window window_;
-  const Drawables* drawables_ = nullptr;  // the caller's, until the next begin
+  const Drawables* drawables_ = nullptr;  // the caller's object, valid until the next begin()
 };
 
 }  // namespace farcull

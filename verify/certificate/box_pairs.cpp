@@ -26,15 +26,15 @@ BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The tree divides at the median of the centres, along the axis in which they spread most. These
-// places change only the time of a query, not its answer, since a query looks below every node
-// whose box it meets.
+// The tree divides at the median of the centres, along the axis in which they spread most. The
+// choice changes only the time of a query, not its answer: a query looks below every node whose box
+// it meets.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;
   const auto to = from + count;
   Node node{.bounds = bounds[*from], .first = first, .count = count};
-  Bounds centres;  // box of the centres; adds halves, since a sum may overflow
+  Bounds centres;  // the box of the centres; centre() halves first, since lo + hi may overflow
   const auto centre = [&](std::uint32_t t, int k) {
     return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2;
   };
@@ -74,7 +74,8 @@ BoxPairs::BoxPairs(const Scene& scene, double clearance, const Tile& tile)
   if (count > 0) tree_.add(0, count);
 }
 
-// Rounding is monotone: boxes inside x and y never have a smaller rounded difference than x and y.
+// If x and y do not meet, no boxes inside x and y meet: rounding is monotone, so the inner boxes
+// have no smaller rounded differences.
 bool BoxPairs::meet(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const {
   for (int k = 0; k < 3; ++k) {
     if (clearance_ == 0) {
@@ -94,7 +95,7 @@ bool BoxPairs::next(std::vector<TrianglePair>& pairs, std::size_t enough) {
              scene_.objects[object].triangle_count;
     };
     while (triangle_ >= end_of(object_)) ++object_;
-    // Objects are contiguous and ascending: the later triangles that make a pair start here.
+    // Objects are contiguous and ascending. So the partners of triangle_ have indices >= later.
     const std::uint64_t later =
         scene_.objects[object_].self ? std::uint64_t{triangle_} + 1 : end_of(object_);
     const BoundsTree::Bounds& bounds = tree_.bounds[triangle_];

@@ -1,4 +1,4 @@
-// Makes certificates. The choice of directions need not be trusted, since the checker proves each.
+// Makes certificates. The choice of directions need not be trusted, since the checker proves it.
 #include "verify/certificate/certificate.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace farcull {
 
-// One pass over the objects: n triangles make n (n - 1) / 2 pairs, and objects that follow each
-// other in the scene join into one range.
+// An object of n triangles has n (n - 1) / 2 pairs. Objects with consecutive indices join into one
+// range.
 
 NotAsked not_asked(const Scene& scene) {
   NotAsked out;
@@ -61,10 +61,12 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
   return kept ? kKept : kMeets;
 }
 
-/// Finds the pairs of a sorted list in a longer sorted list, whose pairs come one after the other.
+/// Tells which pairs of a sorted enumeration are in a given sorted list. The caller passes the
+/// pairs of the enumeration to contains(), one after the other.
 class Marked {
  public:
-  /// others: pairs that are not in the longer list are skipped; if false, they are an error.
+  /// pairs: the given list. others: whether the list may have pairs that are not enumerated; if
+  /// false, such a pair is an error.
   Marked(std::span<const TrianglePair> pairs, const char* name, bool others)
       : pairs_(pairs), name_(name), others_(others) {
     for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -101,7 +103,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   const FloatingPointGuard guard;
   if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error("make_certificate: a clearance must be finite and not negative");
-  constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
+  constexpr std::size_t kBlock = 1 << 16;   // about this many pairs are decided at a time
   constexpr std::size_t kPerThread = 1024;  // fewer pairs are not worth a thread
   Certificate out;
   out.scene = whole ? whole->key : key_of(scene);

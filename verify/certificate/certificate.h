@@ -1,14 +1,14 @@
-// A certificate says what a run claims about every pair of triangles whose boxes overlap, with one
-// byte of evidence for each pair. So a stranger can prove or refute the claims without any of the
-// code that culled. docs/certificate.md has the format and the proof that 38 directions suffice.
+// A certificate says what a run claims about every pair of triangles whose boxes overlap. It has
+// one byte of evidence for each pair. So a stranger can prove or refute the claims without the code
+// that culled. docs/certificate.md has the format and the proof that 38 directions suffice.
 //
-// A check that passes proves something about the scene alone: which of the pairs of triangles that
-// count meet. A pair counts if its triangles are of different objects, or of one object marked
-// `self`. The certificate names the list of the pairs that meet by its hash, so that a written list
-// is proved, too. Neighbours (verify/exact.h) meet iff they share more than their shared part.
-// Pairs whose boxes are disjoint need no evidence. With a clearance D > 0, "meets" means "is at
-// distance D or less", "overlap" means "are no farther apart than D", and "disjoint" means "farther
-// apart than D"; neighbours, whose distance is 0, are decided as without a clearance.
+// A check that passes proves which pairs of triangles of the scene meet, among the pairs that
+// count. A pair counts if its triangles are of different objects, or of one object marked `self`.
+// The certificate has a hash of the list of the pairs that meet, so the check proves a written list
+// with this hash as well. Neighbours (verify/exact.h) meet iff they share more than their shared
+// part. Pairs whose boxes are disjoint need no evidence. With a clearance D > 0, "meets" means "is
+// at distance D or less", "overlap" means "are no farther apart than D", and "disjoint" means
+// "farther apart than D"; neighbours, whose distance is 0, are decided as without a clearance.
 //
 // The certificate of a tile (docs/tiles.md) is only about the pairs that belong to the tile. The
 // certificates of tiles that together cover an axis from end to end prove the whole list.
@@ -28,13 +28,13 @@
 
 namespace farcull {
 
-/// The pairs that a scene does not ask about: those inside an object that is not `self`. No count
-/// of pairs that meet, are missed or are proved includes them, so a report of such a count reports
-/// these pairs as well.
+/// The pairs that a scene does not ask about: pairs of triangles of one object that is not `self`.
+/// Counts of pairs that meet, are missed or are proved exclude these pairs, so a report of such a
+/// count has to name their number.
 struct NotAsked {
-  std::uint64_t objects = 0;                         // that are not tested against themselves
-  std::uint64_t pairs = 0;                           // of two triangles inside one of them
-  std::vector<std::array<std::uint32_t, 2>> ranges;  // these objects, as [first, last]
+  std::uint64_t objects = 0;                         // objects that are not `self`
+  std::uint64_t pairs = 0;                           // pairs of two triangles of one such object
+  std::vector<std::array<std::uint32_t, 2>> ranges;  // indices of such objects, as [first, last]
 };
 
 NotAsked not_asked(const Scene& scene);
@@ -44,11 +44,11 @@ struct Certificate {
     std::string name;
     std::uint64_t objects = 0;
     std::uint64_t triangles = 0;
-    std::string hash;  // scene_hash(); names do not count
+    std::string hash;  // scene_hash(), which ignores names
     bool operator==(const SceneKey&) const = default;
   };
 
-  struct Unasked {  // as NotAsked
+  struct Unasked {  // the counts of NotAsked
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;
     bool operator==(const Unasked&) const = default;
@@ -58,10 +58,10 @@ struct Certificate {
   /// + meeting = kept + culled.
   struct Claims {
     std::uint64_t box_pairs = 0;
-    std::uint64_t kept = 0;        // called kept: left to the exact tests by the method
+    std::uint64_t kept = 0;        // the method left these pairs to the exact tests
     std::uint64_t culled = 0;      // box_pairs - kept
-    std::uint64_t separated = 0;   // disjoint
-    std::uint64_t neighbours = 0;  // neighbours that meet only in what they share
+    std::uint64_t separated = 0;   // disjoint pairs
+    std::uint64_t neighbours = 0;  // neighbours that meet only in their shared part
     std::uint64_t meeting = 0;     // box_pairs - separated - neighbours
     bool operator==(const Claims&) const = default;
   };
@@ -74,37 +74,38 @@ struct Certificate {
     bool operator==(const View&) const = default;
   };
 
-  /// For the reader's information; no check can attest it.
+  /// What a run says about itself. No check can prove it.
   struct Run {
     std::string method;
-    std::uint64_t resolution = 0;  // px; 0 where nothing was drawn
-    double radius_px = 0;          // the largest of the views; finite, >= 0
+    std::uint64_t resolution = 0;  // px; 0 if nothing was drawn
+    double radius_px = 0;          // the largest radius of the views; finite, >= 0
     std::string offset;
     std::vector<View> views;
     struct Device {
       std::string vendor, renderer, version, glsl;
       bool operator==(const Device&) const = default;
     };
-    std::optional<Device> device;          // none where nothing was drawn
-    std::vector<std::string> assumptions;  // of the device, that the method relied on
+    std::optional<Device> device;          // none if nothing was drawn
+    std::vector<std::string> assumptions;  // about the device, on which the method relied
     bool operator==(const Run&) const = default;
   };
 
-  SceneKey scene;            // the whole scene, also of a tile's certificate
+  SceneKey scene;            // the whole scene, even if the certificate is of a tile
   double clearance = 0;      // world units, finite, >= 0
   std::optional<Tile> tile;  // none: the certificate is about all pairs
-  Unasked not_asked;         // of the whole scene
+  Unasked not_asked;         // the pairs that the whole scene leaves out
   Claims claims;
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
-  /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
-  /// separates the pair, or kMeets, or kNeighbours; bit 6 (kKept): the run kept the pair; bit 7: 0.
+  /// One byte per pair, in the order of BoxPairs. Bits 0 to 5 hold a direction that separates the
+  /// pair (integer_pair.h), or kMeets, or kNeighbours. Bit 6 (kKept) is 1 if the run kept the pair.
+  /// Bit 7 is 0.
   std::vector<std::uint8_t> evidence;
 
   bool operator==(const Certificate&) const = default;
 };
 
-/// The counts of the claims by their names in a certificate.
+/// The counts of Claims, each with its name in the text of a certificate.
 inline constexpr std::pair<const char*, std::uint64_t Certificate::Claims::*> kClaims[] = {
     {"box_pairs", &Certificate::Claims::box_pairs},
     {"kept", &Certificate::Claims::kept},
@@ -119,10 +120,11 @@ constexpr std::uint8_t kKept = 0x40;
 
 struct ListNumbers;
 
-/// The whole scene, for a scene that has only those of its triangles that meet a tile.
+/// Facts about the whole scene of a tile. The Scene that goes with them has only the triangles that
+/// meet the tile.
 struct WholeScene {
   Tile tile;
-  const ListNumbers* numbers = nullptr;  // of the part's objects and triangles in the whole scene
+  const ListNumbers* numbers = nullptr;  // numbers of objects and triangles in the whole scene
   Certificate::SceneKey key;
   Certificate::Unasked not_asked;
 };
@@ -131,34 +133,35 @@ Certificate::SceneKey key_of(const Scene& scene);
 Certificate::Unasked unasked_of(const Scene& scene);
 
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
-/// the kept pairs that the run found to meet, neighbours included. Both are sorted, each pair once,
-/// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. whole: not null
-/// if the run was on a tile; then all pairs belong to the tile. Throws std::logic_error otherwise.
+/// the kept pairs that the run found to meet, neighbours included. Each list is sorted, each pair
+/// once, a < b. All pairs count and have overlapping boxes. colliding is a part of kept. whole: not
+/// null if the run was on a tile; then all pairs belong to the tile. Throws std::logic_error
+/// otherwise.
 ///
-/// Errors of the run are written as the run made them, so that the check refutes them. A kept pair
-/// is said to meet iff it is in `colliding`, which also gives the hash of the list. If the run
-/// calls a pair disjoint but no direction proves it, the pair gets direction 0 if it was kept
-/// (neighbours: kNeighbours), and kMeets if it was culled. With a clearance > 0, kept pairs whose
-/// boxes are farther apart than the clearance are left out: a method may keep such pairs, but they
-/// need no evidence.
+/// The certificate repeats errors of the run, so that the check refutes them. A kept pair is said
+/// to meet iff it is in `colliding`. list_sha256 is the hash of `colliding`. If the run calls a
+/// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept, and kMeets
+/// if it was culled; kept neighbours get kNeighbours. With a clearance > 0, kept pairs whose boxes
+/// are farther apart than the clearance are left out, since they need no evidence.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0, const WholeScene* whole = nullptr);
 
-/// Makes a certificate for a list that has none, as for a run that kept just these pairs and found
-/// that they meet. Pairs of the list that do not count, or whose boxes are disjoint, are left out:
-/// find_differences() (pair_list.h) names them. listed: a < b, any order, repetitions allowed.
+/// Makes a certificate for a list of pairs, as for a run that kept just these pairs and found that
+/// they meet. Leaves out pairs that do not count or whose boxes are disjoint; find_differences()
+/// (pair_list.h) names these. listed: a < b, any order, repetitions allowed.
 Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> listed,
                                 double clearance = 0);
 
-/// The certificate as JSON, the keys always in the same order, with a final newline. The version is
-/// 3, or 4 with a clearance, or 5 of a tile. Bytes of strings that are not UTF-8 become U+FFFD.
-/// Throws std::logic_error if a radius is not finite.
+/// Returns the certificate as JSON, with the keys always in the same order and a final newline. The
+/// version is 5 for a tile, else 4 with a clearance, else 3. Bytes of strings that are not UTF-8
+/// become U+FFFD. Throws std::logic_error if a radius or the clearance is not finite.
 std::string to_text(const Certificate& certificate);
 
 /// The inverse of to_text(). Throws Error naming `name` and the fault if the text is not JSON of
-/// exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64, format
-/// or version. It does not judge what the certificate claims. Memory in proportion to the text.
+/// exactly this form. Faults are: wrong syntax or UTF-8; unknown, missing or repeated keys; wrong
+/// types, ranges, base64, format or version. The claims are not judged. Memory in proportion to the
+/// text.
 Certificate parse_certificate(std::string_view text, const std::string& name);
 
 enum class Verdict : std::uint8_t { proved, refuted, not_proved };
@@ -166,30 +169,30 @@ std::string to_string(Verdict verdict);
 
 struct CheckResult {
   Verdict verdict = Verdict::not_proved;
-  std::string reason;                   // empty where proved
-  std::optional<TrianglePair> pair;     // the pair that refutes, or whose evidence fails
-  Certificate::Claims found;            // counted by the checker, whatever was claimed
-  std::vector<TrianglePair> meeting;    // the pairs that meet, sorted; decided by the checker
+  std::string reason;                   // empty if proved
+  std::optional<TrianglePair> pair;     // the pair that decides the verdict, if one does
+  Certificate::Claims found;            // the checker's own counts
+  std::vector<TrianglePair> meeting;    // the pairs that meet, as the checker decided; sorted
   std::string list_sha256;              // pair_list_hash() of `meeting`; empty if none was decided
-  std::uint64_t culled_meeting = 0;     // pairs that the certificate calls culled and that meet
-  std::vector<std::string> unattested;  // what the check cannot prove, one line each
-  double ms = 0;                        // wall clock of the check: hash, enumeration and decisions
-  double decide_ms = 0;                 // wall clock of the decisions alone, on all cores
+  std::uint64_t culled_meeting = 0;     // number of pairs that meet but are called culled
+  std::vector<std::string> unattested;  // what the check cannot prove, one item each
+  double ms = 0;                        // wall clock of the whole check
+  double decide_ms = 0;                 // wall clock of the decisions alone
 };
 
 /// Decides every pair of the scene whose boxes overlap, in integers, and compares with the claims.
 /// - refuted: the certificate calls a pair culled that meets, or is wrong about whether a pair
 ///   meets. The first such pair in order is named.
-/// - not_proved: there is no such pair, but the certificate is of another scene, the evidence is
-///   too short or too long, a count or the hash of the list is wrong, or a byte is wrong: it has no
-///   meaning, its direction does not separate the pair (which is disjoint), or it does not say that
-///   neighbours meet only in what they share.
-/// - proved: neither. So the pairs of the list meet, and no others that count. The check does not
-///   prove which pairs the run kept, nor anything else in Run. If a pair that meets is called kept,
-///   the claim about the scene is true, whatever the run did.
-/// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
-/// With `whole`, the scene has the triangles that meet the tile, and the check is about the pairs
-/// that belong to it; the certificate has to be of this tile and of the whole scene.
+/// - not_proved: no pair refutes the certificate, but it has another fault. It is of another scene,
+///   or the evidence is too short or too long, or a count or the hash of the list is wrong, or a
+///   byte is wrong. A byte is wrong if it has no meaning, if its direction does not separate the
+///   disjoint pair, or if it does not say that neighbours meet only in what they share.
+/// - proved: there is no fault. So the pairs of the list meet, and no other pairs that count. The
+///   check does not prove which pairs the run kept, nor anything else in Run.
+/// If the scene or the length of the evidence is wrong, no decision is returned: bytes and pairs do
+/// not belong together.
+/// With `whole`, `scene` has only the triangles that meet the tile. The check is then about the
+/// pairs that belong to the tile. The certificate has to be of this tile and of the whole scene.
 /// Throws std::logic_error if the clearance is negative or not finite. Precondition: validate()
 /// accepts the scene.
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene,

@@ -1,4 +1,5 @@
-// The checker. Only box_pairs, integer_pair, pair_list and this file have to be right.
+// The checker of certificates. Only box_pairs, integer_pair, pair_list and this file have to be
+// right.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +20,10 @@ namespace {
 enum class EvidenceFault : std::uint8_t {
   as_claimed,
   // These findings leave the certificate unproved:
-  wrong_direction,  // the pair is disjoint, but not for the reason given
+  wrong_direction,  // the pair is disjoint, but the direction does not separate it
   not_neighbours,   // neighbours meet only in what they share, but the byte does not say so
   no_evidence,      // the byte means nothing
-  // These findings refute it:
+  // These findings refute the certificate:
   culled_meets,
   meets,       // a kept pair meets, but is claimed to be disjoint
   separated,   // the pair is disjoint, but is claimed to meet
@@ -42,9 +43,9 @@ struct Decision {
       "points within the clearance");
 }
 
-/// Decides the pair without trusting the byte: a direction separates it, or a point lies in both
-/// triangles, or two points are within the clearance. Neighbours are decided by
-/// meets_beyond_shared().
+/// Decides the pair without trusting the byte. The pair is disjoint if a direction separates it.
+/// The pair meets if a point lies in both triangles, or if two points are within the clearance.
+/// meets_beyond_shared() decides neighbours.
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);
@@ -161,8 +162,8 @@ class Tally {
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == EvidenceFault::as_claimed) return;
-    // Names the first pair that refutes. As long as there is none, names the first that is not
-    // proved.
+    // The result names the first pair that refutes the certificate. If no pair refutes it, the
+    // result names the first pair that is not proved.
     const bool refuted = decision.finding >= EvidenceFault::culled_meets;
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
@@ -170,7 +171,7 @@ class Tally {
     result_.reason = sentence(decision.finding, byte, clearance_);
   }
 
-  /// The result; to be called after every pair was added.
+  /// Returns the result. Call it after all pairs were added.
   CheckResult finish(const Certificate& certificate, const Scene& scene, const WholeScene* whole,
                      double decide_ms) {
     result_.decide_ms = decide_ms;
@@ -198,7 +199,7 @@ CheckResult not_proved(std::string reason) {
 
 CheckResult decide_all(const Certificate& certificate, const Scene& scene,
                        const WholeScene* whole) {
-  constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
+  constexpr std::size_t kBlock = 1 << 16;  // at a time: there may be many millions of pairs
   constexpr std::size_t kPerThread = 1024;
   BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Tile());
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -234,7 +235,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
   return tally.finish(certificate, scene, whole, decide_ms);
 }
 
-// Why the certificate is of another scene; empty if the keys are the same except for the name.
+// Returns why the certificate is of another scene; empty if the keys differ at most in the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
   const auto differ = [](const std::string& what, const std::string& one,
                          const std::string& other) {

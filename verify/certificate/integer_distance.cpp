@@ -1,4 +1,4 @@
-// Scales a pair of triangles to integers once. They are GMP's integers, since the square of a
+// Scales a pair of triangles to integers once. GMP's integers are used, since the square of a
 // distance mostly has many digits.
 #include "verify/certificate/integer_distance.h"
 
@@ -24,8 +24,9 @@ namespace {
 
 constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
-/// Constructs the only two points of these features that can be nearest points, if no earlier pair
-/// of features has nearest points. False if there are no such points.
+/// Constructs one point on feature of_a of a and one point on feature of_b of b. If no earlier pair
+/// of features has nearest points, no other two points of these features can be nearest. Returns
+/// false if there are no such points.
 bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                int of_a, int of_b) {
   if (of_a < kFirstEdge) {
@@ -42,14 +43,14 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const 
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
-// Counts the crossings along a ray in the direction of the first axis. The ray starts a little
-// beside the point, by e along the second axis and by e^2 along the third, where e > 0 is
-// infinitely small. So the ray meets no edge, and one ray is enough. The sign of a polynomial in e
-// is that of its coefficient of lowest degree that is not 0.
+// is_within() counts the crossings of a mesh and a ray from a point. The ray has the direction of
+// the first axis. It starts a little beside the point, by e along the second axis and by e^2 along
+// the third, where e > 0 is infinitely small. So the ray meets no edge, and one ray is enough. The
+// sign of a polynomial in e is that of its coefficient of lowest degree that is not 0.
 
-/// On which side of the ray the edge from p to q passes (p and q are relative to the point): the
-/// sign of the first coordinate of (p - o) x (q - o), o = (0, e, e^2). 0 only if p and q differ in
-/// no coordinate but the first.
+/// Returns on which side of the ray the edge from p to q passes: the sign of the first coordinate
+/// of (p - o) x (q - o), o = (0, e, e^2). p and q are relative to the point. Returns 0 only if p
+/// and q differ in no coordinate but the first.
 int side_of_edge(const BigVector& p, const BigVector& q) {
   const int sign = cmp(mpz_class(p[1] * q[2]), mpz_class(p[2] * q[1]));
   if (sign != 0) return sign;
@@ -65,8 +66,8 @@ mpz_class determinant(const std::array<BigVector, 3>& t) {
   return out;
 }
 
-/// False if the box of the triangle is beside the ray from x or behind x, so that the ray cannot
-/// cross it. The comparisons are exact.
+/// Returns false if the box of the triangle is beside the ray from x or behind x, so that the ray
+/// cannot cross the box. The comparisons are exact.
 bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   const auto& [p, q, r] = t;
   if (std::max({p.x(), q.x(), r.x()}) < x.x()) return false;
@@ -76,7 +77,7 @@ bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   return true;
 }
 
-/// Is x inside the closed mesh? Empty if x lies on a triangle that the ray crosses.
+/// Returns whether x is inside the closed mesh; empty if x lies on a triangle that the ray crosses.
 std::optional<bool> is_within(const Scene& scene, const Object& object, const Vec3& x,
                               IntegerSurface mesh) {
   std::int64_t winding = 0, count = 0;
@@ -87,9 +88,10 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
     const int side = side_of_edge(pair.b[0], pair.b[1]);
     if (side == 0 || side_of_edge(pair.b[1], pair.b[2]) != side ||
         side_of_edge(pair.b[2], pair.b[0]) != side) {
-      continue;  // passes by
+      continue;  // the ray passes by t
     }
-    // The ray meets the plane of t at determinant / n_x, n a normal; n_x has the sign `side`.
+    // The ray meets the plane of t at determinant / n_x, where n is a normal; n_x has the sign
+    // `side`.
     const int ahead = sgn(determinant(pair.b));
     if (ahead == 0) return std::nullopt;
     if (ahead != side) continue;
@@ -102,20 +104,20 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
 using Place = std::array<double, 3>;
 
 IntegerSurface mesh_of(const Scene& scene, const Object& object) {
-  std::vector<std::tuple<Place, Place, bool>> edges;  // lower end, upper end, upwards
+  std::vector<std::tuple<Place, Place, bool>> edges;  // lower end, upper end, true if upwards
   for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
     const std::array<Vec3, 3> t = scene.corners(object.first_triangle + k);
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     std::array<Place, 3> at;
     for (std::size_t i = 0; i < 3; ++i)
-      at[i] = {t[i].x() + 0.0, t[i].y() + 0.0, t[i].z() + 0.0};  // no -0.0
+      at[i] = {t[i].x() + 0.0, t[i].y() + 0.0, t[i].z() + 0.0};  // turns -0.0 into 0.0
     for (std::size_t i = 0; i < 3; ++i) {
       const Place &from = at[i], &to = at[(i + 1) % 3];
       edges.emplace_back(std::min(from, to), std::max(from, to), from < to);
     }
   }
   std::ranges::sort(edges);
-  // Edges with the same two ends follow each other, downward ones first.
+  // Sorting brings edges with the same two ends together.
   bool oriented = true;
   for (std::size_t i = 0; i < edges.size();) {
     const auto [lower, upper, up] = edges[i];
@@ -131,8 +133,8 @@ IntegerSurface mesh_of(const Scene& scene, const Object& object) {
   return oriented ? IntegerSurface::oriented : IntegerSurface::closed;
 }
 
-/// One corner of each connected part of the mesh: triangles that share a vertex index, directly or
-/// through others, are one part.
+/// Returns one corner of each connected part of the mesh. Triangles that share a vertex index,
+/// directly or through other triangles, are in one part.
 std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) {
   const auto first = scene.triangles.begin() + object.first_triangle;
   const auto last = first + object.triangle_count;
@@ -224,7 +226,7 @@ struct IntegerInside::OfObject {
   Box box = Box::empty();
   std::once_flag closed_found, corners_found;
   IntegerSurface mesh = IntegerSurface::open;
-  std::vector<Vec3> corners;  // one of each part
+  std::vector<Vec3> corners;  // one corner of each connected part
 };
 
 IntegerInside::IntegerInside(const Scene& scene)

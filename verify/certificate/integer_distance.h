@@ -1,7 +1,7 @@
-// The exact distance of two triangles with the features that realise it, and the proof that two
-// triangles are no nearer than some length. Both in integers. For the accounting of distances, so
-// this file uses neither CGAL nor verify/closest. docs/proximity.md has the theorems. Triangles are
-// as in verify/exact.h; subnormals are not flushed to zero.
+// Computes in integers the exact distance of two triangles with the features that realise it, and
+// proves in integers that two triangles are no nearer than some length. The accounting of distances
+// uses this file as a check, so the file uses neither CGAL nor verify/closest. docs/proximity.md
+// has the theorems. Triangles are as in verify/exact.h; subnormals are not flushed to zero.
 #pragma once
 
 #include <array>
@@ -21,42 +21,43 @@ struct FractionPoint {
   int exponent = 0;
   Vec3 from;
 };
-/// True iff each coordinate of x is that of the point, rounded as IEEE 754 does: to the nearest
-/// double, to the even one of two equally near doubles, to infinity beyond the largest double.
-/// False for -0.0.
+/// True iff each coordinate of x is the point's coordinate, rounded as IEEE 754 does: to nearest,
+/// ties to even, infinity beyond the largest double. False for -0.0.
 bool is_rounded(const Vec3& x, const FractionPoint& point);
 
-/// The distance of two triangles, and where its ends are. Features are numbered: 0 to 2 the
-/// corners, 3 + i the edge from corner i to the next, 6 the face. The features are the first pair
-/// (by the feature of a, then by that of b) that has two nearest points.
+/// The distance of two triangles, with the features and points that realise it. Features are
+/// numbered: 0 to 2 are the corners, 3 + i is the edge from corner i to the next, 6 is the face.
+/// `features` is the first pair of features that has two nearest points, ordered by the feature of
+/// a, then by the feature of b.
 struct IntegerDistance {
   Fraction squared;
   std::array<std::uint8_t, 2> features{};
-  /// The only two nearest points on these features, of a and of b.
+  /// The nearest points on these features, of a and of b. The features have no others.
   std::array<FractionPoint, 2> points;
 };
 
-/// The distance of a and b. For one pair of features after the other, two points are constructed,
-/// until they lie in their triangles and signs of scalar products prove them nearest.
+/// Returns the distance of a and b. Constructs two points for one pair of features after the other,
+/// until the points lie in their triangles and signs of scalar products prove them nearest.
 IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// True iff the distance is more than `length`; with or_as_far, iff it is at least `length`. Finds
-/// one of the 38 directions d of integer_pair.h whose gap g is long enough: g^2 > length^2 (d . d),
-/// or >=. So this function shares no construction with integer_distance().
+/// True iff the distance is more than `length`; with or_as_far, iff it is at least `length`. Looks
+/// for a direction d among the 38 of integer_pair.h whose gap g is long enough: g^2 >
+/// length^2 (d . d), or >= with or_as_far. So this function shares no construction with
+/// integer_distance().
 bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
                bool or_as_far);
 
 // Decides in integers whether one of two objects lies inside the other, by the definitions of
-// verify/inside.h. For the accounting, so this part uses neither verify/inside nor
+// verify/inside.h. The accounting uses this part as a check, so it uses neither verify/inside nor
 // experiments/method/distances. docs/proximity.md has the proof ("One object inside another").
 
-/// a, b: this object is inside the other, with all of its points. none: neither object is inside
-/// the other. not_closed: neither is inside the other, but the box of one is in the box of the
-/// other, which is not closed. unknown: nothing is claimed.
+/// a: object a is inside object b, with all of its points. b: object b is inside object a. none:
+/// neither object is inside the other. not_closed: neither is inside the other, but the box of one
+/// is in the box of the other, whose mesh is not closed. unknown: nothing is claimed.
 enum class InsideClaim : std::uint8_t { unknown, none, a, b, not_closed };
 
-/// Answers for one scene, which must stay as it is and outlive this object. Keeps facts about each
-/// object of the scene that take long to compute.
+/// Answers for one scene, which must not change and must outlive this object. Stores facts about
+/// each object of the scene that take long to compute.
 class IntegerInside {
  public:
   explicit IntegerInside(const Scene& scene);
@@ -64,10 +65,10 @@ class IntegerInside {
   IntegerInside(const IntegerInside&) = delete;
   IntegerInside& operator=(const IntegerInside&) = delete;
 
-  /// Which object is inside the other; never `unknown`. Empty if a corner of one object is found on
-  /// the mesh of the other. The answer holds only if the objects share no point, which the caller
-  /// has to prove. Precondition: the objects differ and have triangles. May be called by several
-  /// threads at once. Throws std::logic_error for objects that the scene does not have.
+  /// Returns which object is inside the other; never `unknown`. Empty if a corner of one object is
+  /// found on the mesh of the other. The answer holds only if the objects share no point, which the
+  /// caller has to prove. Precondition: the objects differ and have triangles. May be called by
+  /// several threads at once. Throws std::logic_error if an object is not in the scene or a == b.
   std::optional<InsideClaim> which(std::uint32_t a, std::uint32_t b) const;
 
  private:

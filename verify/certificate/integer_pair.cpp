@@ -1,5 +1,5 @@
-// Scales a pair to integers once. 128-bit integers decide it if the coordinates are short enough
-// and there is no clearance; else GMP's integers do.
+// Scales a pair of triangles to integers once. 128-bit integers decide the pair if the coordinates
+// are short enough and there is no clearance; otherwise GMP's integers do.
 #include "verify/certificate/integer_pair.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ int bit_length(Wide magnitude) {
                    : std::bit_width(static_cast<std::uint64_t>(magnitude));
 }
 
-/// The triangle whose corners are three of `points`, from `first` on.
+/// Returns the triangle of points[first] and the two points after it.
 Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int first) {
   Corners<Wide> out;
   for (int i = 0; i < 3; ++i) {
@@ -79,7 +79,7 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       top = std::max(top, x.exponent + bit_length(x.mantissa < 0 ? -Wide{x.mantissa} : x.mantissa));
     }
   }
-  constexpr int kWidest = 125;  // bits of a coordinate, so that a difference still fits a Wide
+  constexpr int kWidest = 125;  // most bits of a coordinate, so that a difference fits a Wide
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (corners_[0][i] != corners_[1][j]) continue;
@@ -169,7 +169,7 @@ bool IntegerPair::is_within() {
 }
 
 bool IntegerPair::meets_beyond_shared() {
-  // The shared corners of a; if there are fewer than three, one of them is repeated.
+  // The shared corners of a; if there are fewer than three, the last one is repeated.
   std::array<int, 3> shared = {-1, -1, -1};
   std::size_t count = 0;
   for (int i = 0; i < 3; ++i) {
@@ -180,7 +180,8 @@ bool IntegerPair::meets_beyond_shared() {
 
   thread_local PointSearch search;
   const bool all = shared_[0] == 7 && shared_[1] == 7;
-  // The hull of the shared corners is the shared part, unless it is a triangle with an interior.
+  // The shared part is the hull of the shared corners, unless this hull is a triangle with an
+  // interior.
   if (all && search.is_triangle(big().a)) return true;
   for (int direction = 0; direction < 11; ++direction) {
     const bool only_shared =
@@ -196,8 +197,7 @@ bool IntegerPair::meets_beyond_shared() {
   });
 }
 
-// Tries all 38 directions in doubles. Rounding errors do no harm, since the caller proves the
-// guess.
+// Tries all 38 directions in doubles. Rounding errors do no harm: the caller proves the direction.
 
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   constexpr double kClear = 1e-6;

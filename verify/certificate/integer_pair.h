@@ -1,16 +1,17 @@
-// Decides two triangles in integers: finds which of 38 directions separates them, or a point that
-// they share.
+// Decides in integers whether two triangles meet: finds which of 38 directions separates the
+// triangles, or a point that they share.
 //
 // The certificate checker relies on this file, so the file uses neither CGAL nor verify/exact.
-// Every finite double is an integer times a power of two: the pair is scaled by one common power,
-// and from there on nothing is rounded and nothing can overflow. The integers are GMP's, or machine
-// integers if the scaled coordinates are short enough for a bound that is proved beside the code.
+// Every finite double is an integer times a power of two. So one common power of two turns all
+// coordinates of a pair into integers, and from there on nothing is rounded and nothing can
+// overflow. The integers are GMP's, or machine integers if the scaled coordinates are short enough
+// (most_bits() has the bound and its proof).
 //
 // Triangles are as in verify/exact.h: touching counts, and a degenerate triangle is the segment or
 // the point that it is. docs/certificate.md proves that one of the 38 directions separates every
-// disjoint pair, and one of 21 points shows that any other pair meets. With a clearance, the same
-// directions show every pair that is farther apart, and 42 pairs of points or the 21 points show
-// every other pair.
+// disjoint pair, and that one of 21 points shows that any other pair meets. With a clearance, one
+// of the 38 directions shows that a pair is farther apart; for any other pair, one of 42 pairs of
+// points or one of the 21 points shows that it is not.
 #pragma once
 
 #include <array>
@@ -25,10 +26,10 @@ namespace farcull {
 /// Directions are numbered 0 .. 37. With i, j in 0 .. 2, edge i of t = t[(i + 1) % 3] - t[i] and
 /// w = b[j] - a[i]:
 ///   0           edge 0 of a x edge 1 of a, the normal of a
-///   1           the same of b
+///   1           edge 0 of b x edge 1 of b, the normal of b
 ///   2 + 3i + j  edge i of a x edge j of b
-///   11 + 3i + j w (e . e) - e (w . e), e = edge i of a: from that edge's line to corner j of b
-///   20 + 3i + j the same, e = edge j of b: from corner i of a to that edge's line
+///   11 + 3i + j w (e . e) - e (w . e), e = edge i of a: from the line of e to corner j of b
+///   20 + 3i + j w (e . e) - e (w . e), e = edge j of b: from corner i of a to the line of e
 ///   29 + 3i + j w, from corner i of a to corner j of b
 constexpr int kDirections = 38;
 
@@ -42,32 +43,30 @@ inline constexpr std::array<int, kDirections> kByDegree = [] {
 /// A pair in integers. Preconditions: finite coordinates; subnormals are not flushed to zero.
 class IntegerPair {
  public:
-  /// clearance: world units, finite, >= 0; a distance of exactly that much is within it.
+  /// clearance: world units, finite, >= 0; a distance equal to the clearance is within it.
   IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance = 0);
   ~IntegerPair();
   IntegerPair(const IntegerPair&) = delete;
   IntegerPair& operator=(const IntegerPair&) = delete;
 
-  /// True iff the projections of a and b onto the direction have a gap, whichever comes first, that
-  /// is longer than the clearance times the direction's length. A direction that is zero separates
-  /// nothing. Precondition: 0 <= direction < kDirections.
+  /// True iff the projections of a and b onto the direction d, in either order, have a gap that is
+  /// longer than clearance |d|. False if d is zero. Precondition: 0 <= direction < kDirections.
   bool separated_by(int direction);
-  /// A direction that separates; none iff the distance is at most the clearance.
+  /// Returns a direction that separates the pair; none iff the distance is at most the clearance.
   std::optional<int> separating_direction();
-  /// True iff the triangles share a point. Uses no directions: true iff one of 21 constructed
-  /// points (corners, edge with plane, edge with edge) lies in both closed triangles. Each point is
-  /// a vector of integers over one integer.
+  /// True iff the triangles share a point. Constructs 21 points: corners, crossings of an edge and
+  /// a plane, crossings of two edges. The triangles share a point iff one of these lies in both
+  /// closed triangles.
   bool has_common_point();
-  /// True iff the distance is at most the clearance. Uses no directions: true iff
-  /// has_common_point(), or two constructed points, one verified to lie in each triangle, are no
-  /// farther apart than the clearance.
+  /// True iff the distance is at most the clearance. This is so iff has_common_point() is true, or
+  /// two constructed points, one in each triangle, are no farther apart than the clearance.
   bool is_within();
 
   /// True iff a corner of a and a corner of b are equal.
   bool shares_position() const { return shared_[0] != 0; }
-  /// True iff the triangles share more than the shared part, as verify/exact.h defines it for
-  /// neighbours: the equal corners and the segments between any two of them. A direction may show
-  /// that they do not (docs/certificate.md); else the 21 points decide. Precondition:
+  /// True iff the triangles share more than the shared part, which verify/exact.h defines: the
+  /// equal corners and the segments between any two of them. A direction may show that the
+  /// triangles share no more (docs/certificate.md); otherwise the 21 points decide. Precondition:
   /// shares_position().
   bool meets_beyond_shared();
 
@@ -80,16 +79,16 @@ class IntegerPair {
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;
   std::array<unsigned, 2> shared_{};  // bit i: corner i equals a corner of the other triangle
-  // The corners of a, then of b, relative to the first corner of a; only if bits_ is small enough.
+  // The corners of a, then of b, relative to the first corner of a. Not set if too long.
   std::array<std::array<std::int64_t, 3>, 6> small_;
   int bits_ = 0;  // |difference of two coordinates| < 2^bits_
   std::unique_ptr<Big> big_;
 };
 
-/// Guesses in doubles which of the 38 directions separates two triangles most clearly: the first,
-/// in order of degree, whose gap beyond the clearance is far above rounding errors; else the one
-/// with the widest gap in proportion to the pair's extent. Doubles may overflow: it is only a
-/// guess.
+/// Guesses in doubles which of the 38 directions separates two triangles most clearly. The guess is
+/// the first direction of kByDegree whose gap beyond the clearance is far above rounding errors. If
+/// there is none, the guess is the direction with the widest gap in proportion to the pair's
+/// extent. Doubles may overflow, so the guess may be wrong.
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// The directions and points that prove something about a pair of triangles. For integer_pair.cpp
-// and integer_distance.cpp alone.
+// The directions and points that prove something about a pair of triangles. Only integer_pair.cpp
+// and integer_distance.cpp include this file.
 #pragma once
 
 #include <algorithm>
@@ -75,9 +75,9 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// True iff the gap that has_gap() has found proves that the square of the distance is more than
-/// over / under (over >= 0, under > 0); with or_as_far, at least over / under. No gap is longer
-/// than the distance. Compares gap^2 / |d|^2.
+/// True iff gap^2 / |d|^2 > over / under for the direction d = s.d (with or_as_far: >=). Then the
+/// square of the distance is above over / under as well, since no gap is longer than the distance.
+/// Preconditions: has_gap() was true for s, over >= 0, under > 0.
 inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
                         bool or_as_far) {
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
@@ -90,12 +90,12 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
   return or_as_far ? s.w[1] >= s.w[2] : s.w[1] > s.w[2];
 }
 
-/// True iff the direction s.d proves that a and b share no more than their shared part. shared_a,
-/// shared_b: the corners that a and b have in common. The proof: a plane perpendicular to d has all
-/// of a on one side and all of b on the other. So the triangles meet only in the plane, where each
-/// is the hull of its corners in the plane. These hulls share no more than the shared part if all
-/// corners of one hull are shared, or if both hulls are edges that are not parallel (d is their
-/// product).
+/// True iff the direction d = s.d proves that a and b share no more than their shared part.
+/// shared_a: bit i is set if corner i of a equals a corner of b. shared_b: likewise for corners of
+/// b. The proof: a plane perpendicular to d has all of a on one side and all of b on the other. So
+/// the triangles meet only in the plane, where each is the hull of its corners in the plane. These
+/// hulls share no more than the shared part if all corners of one hull are shared, or if both hulls
+/// are edges that are not parallel (d is the product of the two edges).
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
@@ -104,7 +104,7 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
   const bool a_below = *a_hi <= *b_lo;
   if (!a_below && !(*b_hi <= *a_lo)) return false;
-  const Integer plane = a_below ? *a_hi : *a_lo;  // a shared corner lies in it
+  const Integer plane = a_below ? *a_hi : *a_lo;  // where the plane cuts the axis s.d
   unsigned in_a = 0, in_b = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.on_a[i] == plane) in_a |= 1u << i;
@@ -116,12 +116,13 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   return in_a == edge_of((direction - 2) / 3) && in_b == edge_of((direction - 2) % 3);
 }
 
-/// The largest number of bits for which has_gap(make_direction()) stays in 127 bits. Let |x| < D =
-/// 2^bits for all differences x of coordinates; coordinates are relative to a's first corner:
+/// Returns the most bits of a difference of coordinates for which has_gap(make_direction()) fits in
+/// 127 bits. Let |x| < D = 2^bits for all differences x of coordinates; coordinates are relative to
+/// a's first corner:
 ///   corner-corner: |d| < D, |projection| < 3 D^2 < 2^(2 bits + 2)
 ///   cross products: |d| < 2 D^2, |projection| < 6 D^3 < 2^(3 bits + 3)
 ///   perpendiculars: e.e, |w.e| < 3 D^2, |d| < 6 D^3, |projection| < 18 D^4 < 2^(4 bits + 5)
-/// Sums that are still being formed are smaller than these bounds.
+/// Partial sums are smaller than these bounds.
 inline int most_bits(int direction) {
   if (direction >= 29) return 62;
   return direction < 11 ? 41 : 30;
@@ -131,17 +132,17 @@ using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
 /// Constructs points and verifies them. A point is a vector of integers over one integer. The
-/// integers are members for the reason that Scratch gives.
+/// integers are members, since allocating GMP's integers anew takes time.
 class PointSearch {
  public:
-  /// These functions construct a point, and return false if it does not exist. The point lies on
-  /// its edge, but perhaps in neither triangle.
+  /// Each of these functions constructs a point, and returns false if the point does not exist. The
+  /// point may lie in neither triangle.
   bool corner(const BigCorners& t, int i) {
     point_ = t[i];
     scale_ = 1;
     return true;
   }
-  /// The point in which edge i of s crosses the plane of t, if it is one point.
+  /// Constructs the point in which edge i of s crosses the plane of t, if it is one point.
   bool edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
     make_normal(t);
     edge(u_, s, i);
@@ -150,8 +151,8 @@ class PointSearch {
     dot(scale_, normal_, u_);
     return along(s[i]);
   }
-  /// The point of edge i of s nearest to the line of edge j of t, unless the edges are parallel. If
-  /// the lines cross, this is their common point.
+  /// Constructs the point of edge i of s nearest to the line of edge j of t, unless the edges are
+  /// parallel. If the lines cross, the point is their common point.
   bool edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
     edge(u_, s, i);
     edge(v_, t, j);
@@ -163,7 +164,8 @@ class PointSearch {
     return along(s[i]);
   }
 
-  /// The foot of the perpendicular from a point to the line of edge i of t, if it is on the edge.
+  /// Constructs the foot of the perpendicular from `from` to edge i of t, if the foot is on the
+  /// edge.
   bool foot_on_edge(const BigCorners& t, int i, const BigVector& from) {
     edge(u_, t, i);
     minus(w_, from, t[i]);
@@ -171,7 +173,8 @@ class PointSearch {
     dot(scale_, u_, u_);
     return along(t[i]);
   }
-  /// The foot of the perpendicular from a point to the plane of t, if t has one.
+  /// Constructs the foot of the perpendicular from `from` to the plane of t. False if t has no
+  /// plane.
   bool foot_on_plane(const BigCorners& t, const BigVector& from) {
     make_normal(t);
     minus(w_, from, t[0]);
@@ -184,8 +187,8 @@ class PointSearch {
     return scale_ != 0;
   }
 
-  /// True iff the point constructed last is no farther than `distance` from the last point of
-  /// another search: |p / m - q / n| <= distance, compared as squares of integers.
+  /// True iff |p / m - q / n| <= distance, where p / m is the last point of this search and q / n
+  /// the last point of `other`. Compares squares of integers.
   bool is_near(const PointSearch& other, const mpz_class& distance) {
     from_to(other);
     dot(value_, w_, w_);
@@ -195,10 +198,10 @@ class PointSearch {
     return value_ <= side_[1];
   }
 
-  /// Let p be the point constructed last and q the last point of another search. True iff
-  /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners: no corner of a lies
-  /// beyond p in the direction from p to q, and no corner of b beyond q in the opposite one. So if
-  /// p lies in a and q in b, they are nearest points of a and b (docs/certificate.md).
+  /// True iff p, the last point of this search, and q, the last point of `other`, satisfy
+  /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners a_i and b_j. So no point
+  /// of a lies beyond p in the direction from p to q, and no point of b beyond q in the opposite
+  /// direction. If p lies in a and q in b, they are then nearest points (docs/certificate.md).
   bool is_nearest(const PointSearch& other, const BigCorners& a, const BigCorners& b) {
     from_to(other);
     for (int i = 0; i < 3; ++i) {
@@ -218,8 +221,8 @@ class PointSearch {
     return true;
   }
 
-  /// The square of the distance from the point constructed last to the last point of another
-  /// search, as numerator and denominator > 0, not reduced.
+  /// Sets over / under, under > 0, to the square of the distance from the last point of this search
+  /// to the last point of `other`. Not reduced.
   void squared_distance(const PointSearch& other, mpz_class& over, mpz_class& under) {
     from_to(other);
     dot(over, w_, w_);
@@ -237,8 +240,8 @@ class PointSearch {
     return !is_zero(normal_);
   }
 
-  /// True iff the point constructed last lies in the closed hull of the corners, whatever its
-  /// dimension.
+  /// True iff the point constructed last lies in the closed hull of the corners. The hull may be a
+  /// triangle, a segment or a point.
   bool lies_in(const BigCorners& t) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -258,9 +261,9 @@ class PointSearch {
       }
       return true;
     }
-    // Collinear corners: the hull is the union of the edges. The point is between two ends if it is
-    // on their line and in every coordinate its offsets from the ends differ in sign or are zero.
-    // This also decides about two equal ends.
+    // Collinear corners: the hull is the union of the edges. The point is on an edge if it is on
+    // the edge's line and, in every coordinate, its offsets from both ends differ in sign or are
+    // zero. This holds for an edge of length 0 as well.
     for (int i = 0; i < 3; ++i) {
       edge(v_, t, i);
       cross(side_, v_, from_[i]);
@@ -274,7 +277,7 @@ class PointSearch {
   }
 
  private:
-  /// w_ = q - p, times both scales; p is the point constructed last, q that of another search.
+  /// w_ = q - p, times both scales, for the last points p of this search and q of `other`.
   void from_to(const PointSearch& other) {
     for (int k = 0; k < 3; ++k) {
       multiply(w_[k], other.point_[k], scale_);
@@ -286,7 +289,8 @@ class PointSearch {
     edge(w_, t, 1);
     cross(normal_, v_, w_);
   }
-  /// Makes the point from + (numerator / scale) u; false unless the fraction is in [0, 1].
+  /// Makes the point from + (numerator / scale) u. Returns false unless 0 <= numerator / scale <=
+  /// 1.
   bool along(const BigVector& from) {
     if (scale_ < 0) {
       mpz_neg(scale_.get_mpz_t(), scale_.get_mpz_t());
@@ -300,14 +304,15 @@ class PointSearch {
     return true;
   }
 
-  BigVector point_;                // times scale_
+  BigVector point_;                // the point times scale_
   mpz_class scale_;                // > 0 if there is a point
-  std::array<BigVector, 3> from_;  // from each corner to the point, times scale_
+  std::array<BigVector, 3> from_;  // vectors from each corner to the point, times scale_
   BigVector normal_, u_, v_, w_, side_;
   mpz_class numerator_, value_;
 };
 
-/// True iff test() holds for one of the 21 points: corners, edges in planes, edges near edges.
+/// True iff test() holds for one of the 21 points: corners, crossings of an edge and a plane,
+/// crossings of two edges.
 bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const auto& test) {
   for (int i = 0; i < 3; ++i) {
     if (search.edge_and_plane(a, i, b) && test()) return true;

@@ -1,10 +1,10 @@
-// A rounded root is only a guess, so its exact square is compared with the fraction.
+// A rounded root is only a guess, so root_above() compares its exact square with the fraction.
 #include "verify/certificate/integers.h"
 
 namespace farcull {
 namespace {
 
-/// Digits without a sign and without a leading zero.
+/// True if the text is a whole number: only digits, without a leading zero.
 bool is_whole(std::string_view text) {
   if (text.empty() || text.size() > kMostDigits || (text[0] == '0' && text.size() > 1))
     return false;

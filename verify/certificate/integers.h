@@ -1,6 +1,6 @@
-// The numbers of this folder: vectors of machine integers and of GMP's integers, with the few
-// operations that deciding a pair needs; conversion of doubles to integers; fractions. For the
-// sources of verify/certificate, for verify/distance_accounting.h and for tests alone.
+// The numbers of verify/certificate: vectors of machine integers and of GMP's integers, conversion
+// of doubles to integers, fractions. Only the sources of verify/certificate,
+// verify/distance_accounting.h and tests include this file.
 #pragma once
 
 #include <gmpxx.h>
@@ -71,7 +71,7 @@ void edge(Vector<Integer>& out, const Corners<Integer>& t, int i) {
   minus(out, t[(i + 1) % 3], t[i]);
 }
 
-// A pair of triangles in integers: every finite double is an integer times a power of two, so one
+// A pair of triangles in integers. Every finite double is an integer times a power of two. So one
 // common power turns all coordinates of a pair into integers, and nothing is rounded.
 
 /// value = mantissa * 2^exponent, the mantissa odd or 0.
@@ -80,7 +80,7 @@ struct Parts {
   int exponent = 0;
 };
 
-/// Precondition: finite.
+/// Precondition: the value is finite.
 inline Parts parts(double value) {
   if (value == 0) return {};
   int exponent = 0;
@@ -89,20 +89,20 @@ inline Parts parts(double value) {
   return {mantissa >> zeros, exponent - 53 + zeros};
 }
 
-/// Sets `to` to value / 2^exponent. Precondition: this is an integer.
+/// Sets `to` to value / 2^exponent. Precondition: the quotient is an integer.
 inline void scale(mpz_class& to, double value, int exponent) {
   const Parts x = parts(value);
   to = static_cast<long>(x.mantissa);
   if (x.mantissa != 0) to <<= x.exponent - exponent;
 }
 
-/// The value of a double as a rational; 2^1024 replaces infinity.
+/// Returns the value of a double as a rational; 2^1024 replaces infinity.
 inline mpq_class rational(double x) {
   return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
 }
 
-/// Whether x is a number rounded to the nearest double, to the even one of two. beside(next): the
-/// sign of the number minus the middle of x and `next`, a double beside x.
+/// True if x is a number y rounded to the nearest double, ties to even. beside(next) returns the
+/// sign of y minus the middle of x and `next`, where `next` is a double beside x.
 template <class Beside>
 bool is_nearest_double(double x, const Beside& beside) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -112,15 +112,14 @@ bool is_nearest_double(double x, const Beside& beside) {
   return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
 }
 
-/// Two triangles in integers: a corner of the input is the first corner of a, plus 2^exponent times
-/// the integers.
+/// Two triangles in integers. A corner of the input is the first corner of a plus 2^exponent times
+/// the integers here.
 struct ScaledPair {
   Corners<mpz_class> a, b;
   int exponent = 0;
 };
 
-/// Scales two triangles to integers. length: another finite number that has to be a whole multiple
-/// of 2^exponent as well.
+/// Scales two triangles to integers. length: a finite number that has to become an integer, too.
 inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                          double length = 0) {
   int least = std::numeric_limits<int>::max();
@@ -139,7 +138,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       scale(out.b[i][k], b[i][k], out.exponent);
     }
   }
-  // Directions and gaps depend only on differences of corners, and these are shorter numbers.
+  // Directions and gaps depend only on differences of corners. The differences are shorter numbers.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
     for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
@@ -151,7 +150,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 
 namespace farcull {
 
-/// A fraction over / under >= 0. Not always in lowest terms.
+/// A fraction over / under. Not always in lowest terms.
 struct Fraction {
   mpz_class over = 0;   // >= 0
   mpz_class under = 1;  // > 0
@@ -161,25 +160,26 @@ struct Fraction {
   friend bool operator==(const Fraction& x, const Fraction& y) { return x <=> y == 0; }
 };
 
-/// The most decimal digits of either part of a squared distance. All coordinates of a scene times
-/// 2^1074 are integers below 2^2098, and their differences are below D = 2^2099. In this scale the
-/// square of a distance is, by the features of the nearest points, (w . d)^2 / (d . d) with d at
-/// most a cross product of two edges, so both parts are below (6 D^3)^2 < 2^12600. In world units
-/// the denominator has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 < 2^10548. Dividing
-/// by common factors makes none longer. log10(2^12600) < 3793.
+/// The numerator and the denominator of a squared distance have at most this many decimal digits.
+/// All coordinates of a scene times 2^1074 are integers below 2^2098, and their differences are
+/// below D = 2^2099. In this scale the square of a distance is (w . d)^2 / (d . d), where d is at
+/// most a cross product of two edges. So numerator and denominator are below (6 D^3)^2 < 2^12600.
+/// In world units the denominator has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 <
+/// 2^10548. Division by common factors only shortens them. log10(2^12600) < 3793.
 constexpr std::size_t kMostDigits = 4000;
 
-/// The square of a length, finite and >= 0.
+/// Returns the square of a length. Precondition: the length is finite and >= 0.
 Fraction square_of(double length);
 
-/// Parses the whole text as a fraction: decimal digits, '/', decimal digits, in lowest terms,
-/// without leading zeros, each part at most kMostDigits long. Empty for any other text.
+/// Parses the whole text as a fraction: decimal digits, '/', decimal digits. Returns nothing for
+/// any other text, if a number has leading zeros or more than kMostDigits digits, or if the
+/// fraction is not in lowest terms.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// A double that is at least the root, and hardly more; infinity if no finite double suffices.
+/// Returns a double that is at least the root, but hardly more; infinity if no finite double is.
 double root_above(const Fraction& fraction);
 
-/// A length by its square, with the double above it.
+/// A length, given by its square.
 struct Length {
   Fraction squared;
   double above = 0;  // root_above(squared)

@@ -1,4 +1,4 @@
-// Certificates as text. The reader does not trust the text: a first pass checks the syntax alone.
+// Certificates as text. The reader does not trust the text, so a first pass checks only the syntax.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -22,7 +22,7 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile 
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
 
-/// Reads the syntax alone. Bounds the number of values and the depth before anything is built, so
+/// Checks only the syntax. Limits the number of values and the depth before anything is built, so
 /// that memory stays in proportion to the text.
 class Syntax : public nlohmann::json_sax<Json> {
  public:
@@ -43,7 +43,7 @@ class Syntax : public nlohmann::json_sax<Json> {
   }
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::json::exception& error) override {
-    // Cuts off the end of the message, which quotes the text of the file.
+    // The end of the message quotes the text of the file, so it is cut off.
     const std::string_view fault = json_fault(error.what());
     return stop("not JSON at byte " + std::to_string(position) + ": " +
                 printable(fault.substr(0, fault.find("; last read")), 120));
@@ -57,7 +57,7 @@ class Syntax : public nlohmann::json_sax<Json> {
     return false;
   }
   bool count() {
-    constexpr std::uint64_t kMostValues = 10'000;  // views and assumptions are few
+    constexpr std::uint64_t kMostValues = 10'000;  // the lists in a certificate are short
     return ++values_ <= kMostValues || stop("more values than any certificate has");
   }
   bool enter() {
@@ -72,14 +72,14 @@ class Syntax : public nlohmann::json_sax<Json> {
   }
 
   std::uint64_t values_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of each enclosing object; empty for arrays
+  std::vector<std::set<std::string>> keys_;  // keys of each enclosing object; empty for arrays
 };
 
-/// Reads the values of an object by their keys. Throws Error naming the file and the path of the
-/// value, as in unattested.views[1].width, if a value is of another kind.
+/// Reads the values of an object by their keys. If a value has the wrong type, throws Error naming
+/// the file and the path of the value, as in unattested.views[1].width.
 class Reader {
  public:
-  /// name: of the file. place: the path of the object; empty for the whole certificate. Throws
+  /// name: the file. place: the path of the object; empty for the whole certificate. Throws Error
   /// unless the value is an object with exactly these keys.
   Reader(const std::string& name, const Json& object, const std::string& place,
          const std::vector<const char*>& keys)
@@ -176,7 +176,7 @@ Tile read_tile(const Reader& in) {
   };
   place("from", tile.from);
   place("to", tile.to);
-  // Tiles that run backwards could follow each other and cover places twice.
+  // If tiles could run backwards, tiles that follow each other could cover a place twice.
   if (!(tile.from <= tile.to)) in.fail("tile.to is less than tile.from");
   return tile;
 }
@@ -239,7 +239,7 @@ std::string to_text(const Certificate& certificate) {
 
 Certificate parse_certificate(std::string_view text, const std::string& name) {
   const auto fail = [&](const std::string& reason) { throw Error(name, reason, kRemedy); };
-  // At a byte 0 the parser would stop.
+  // The parser would stop at a byte 0.
   if (text.find('\0') != text.npos) fail("is not JSON, which has no byte 0");
   Syntax syntax;
   if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);

@@ -1,5 +1,5 @@
-// Makes the list line by line, so that its hash needs no more memory than one line and the owners
-// of the triangles. A list that is read is compared with the scene and the pairs that meet.
+// Makes the list line by line, so that its hash needs only the memory for one line and the owners
+// of the triangles. A list from a file is compared with the scene and with the pairs that meet.
 #include "verify/certificate/pair_list.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class CsvReader {
                 static_cast<long>(line_));
   }
 
-  /// The cells of the next line that is not empty; false at the end.
+  /// Reads the cells of the next line that is not empty. Returns false at the end of the text.
   bool next(std::vector<std::string>& cells) {
     std::string_view line;
     do {
@@ -67,7 +67,7 @@ class CsvReader {
       line.remove_prefix(end);
       return out;
     }
-    std::string out;  // two quotes mean one
+    std::string out;  // two quotes mean one quote
     for (;;) {
       const std::size_t end = line.find('"');
       if (end == std::string_view::npos) fail("the quotes of a cell are not closed on their line");
@@ -83,7 +83,7 @@ class CsvReader {
   std::uint64_t line_ = 0;
 };
 
-/// Names of the columns of ListedPair.
+/// The names of the columns that are read.
 constexpr std::array kNames = {"object_a",   "triangle_a", "object_b",
                                "triangle_b", "frame",      "neighbours"};
 constexpr std::size_t kNeeded = 4, kFrame = 4, kNeighboursColumn = 5;
@@ -109,7 +109,7 @@ void PairListRows::append(const TrianglePair& pair, std::string& text) const {
   const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
     return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
   };
-  std::array<char, 4 * 21> numbers;  // 20 digits and a comma each
+  std::array<char, 4 * 21> numbers;  // at most 20 digits and a comma for each number
   char* end = numbers.data();
   for (const std::uint64_t number :
        {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)}) {
@@ -230,7 +230,7 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
   struct Meeting {  // a row of the list whose pair meets
     TrianglePair pair;
     std::uint64_t line;
-    bool wrong;  // its entry in `neighbours` is wrong
+    bool wrong;  // the row's entry in `neighbours` is wrong
     auto operator<=>(const Meeting&) const = default;
   };
   std::vector<Meeting> listed;

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Builds the program of the proved checker, and only if its proof holds. Coq checks Proofs.v and the files that it needs, and finds
-# that no theorem of it needs an axiom. Then it turns Checker.v into OCaml, which is compiled with the reader.
+# Builds the proved checker, but only if its proof holds. Coq checks Proofs.v and prints the axioms of its theorems; there must be
+# none. Then Coq translates Checker.v into OCaml, which is compiled together with the reader of certificates.
 #   build.sh FOLDER     makes FOLDER/farcull-check-verified; needs coqc, ocamlfind and zarith. FOLDER/Proofs.log has the theorems.
-#                       If FOLDER has the program of these very files, nothing is done.
+#                       Does nothing if FOLDER has a program made from the same files.
 set -eu
 from=$(cd "$(dirname -- "$0")" && pwd)
 mkdir -p "$1"
@@ -15,7 +15,7 @@ if [ $same = yes ] && [ -x farcull-check-verified ]; then exit 0; fi
 rm -f farcull-check-verified
 cp "$from"/*.v "$from"/*.ml "$from/build.sh" .
 
-# A proof that somebody leaves out has these words; Coq would accept it.
+# With these words Coq accepts a theorem without its proof, so no file may have them.
 if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' ./*.v; then
   echo "build.sh: the proof assumes something" >&2
   exit 1
@@ -28,6 +28,6 @@ if [ "$(grep -cx 'Closed under the global context' Proofs.log)" != "$(grep -c '^
   exit 1
 fi
 coqc -q Extract.v
-# Warnings are those of code that Coq has written.
+# -w -a: no warnings, since Coq has written the code.
 ocamlfind ocamlopt -package zarith -linkpkg -inline 100 -w -a checker.mli checker.ml json.ml main.ml -o farcull-check-verified.new
 mv farcull-check-verified.new farcull-check-verified
