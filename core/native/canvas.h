@@ -83,7 +83,6 @@ struct NativeCanvasOptions {
   unsigned threads = 0;  // 0: one per core
 };
 
-/// The limits of this canvas, for the budget.
 RasterLimits native_limits(int depth_bits = 32);
 
 class NativeCanvas final : public Canvas {
@@ -125,7 +124,6 @@ class NativeCanvas final : public Canvas {
 /// Returns names, the best first, such as "AVX3", "AVX2", "SSE4", "SCALAR" or "EMU128". The last
 /// name stands for plain C++.
 std::vector<std::string> lane_targets();
-/// The instruction set in use.
 std::string lane_target();
 /// All threads use this one of lane_targets() from now on. An empty name chooses the best. No bit
 /// of an answer depends on the choice. Must not be called during a draw. Throws Error for an

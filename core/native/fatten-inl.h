@@ -22,7 +22,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 
-/// Reads the corners of a triangle into the cache.
 HWY_INLINE void prefetch_corners(const Scene& scene, std::uint32_t item) {
   for (const std::uint32_t vertex : scene.triangles[item]) hwy::Prefetch(&scene.vertices[vertex]);
 }

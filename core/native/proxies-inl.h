@@ -222,7 +222,6 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Plain half_height = 0.5f * static_cast<Plain>(job.height);
   const Lane last_x(static_cast<Plain>(range.x1) - 0.5f - half_width);
   const Lane last_y(static_cast<Plain>(y1) - 0.5f - half_height);
-  // Draws one block; returns true as draw_proxy() does.
   const auto draw_block = [&](int x, int y) HWY_ATTR {
     float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
     const Lane cx = Lane(static_cast<Plain>(x) + 0.5f - half_width) + lane_columns();
@@ -240,7 +239,6 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
                                           uniform(s[3]), uniform(s[4]), entry, exit);
     return take_fragments(job, verb, covered, verb == Verb::store ? entry : exit, at, y1 - y);
   };
-  // In wide ranges, kLanes blocks of a row are tested against the edges together.
   const bool many = kLanes > 1 && range.x1 - range.x0 > 2 * kBlockWidth;
   for (int y = y0; y < y1; y += kBlockHeight) {
     if (!many) {
@@ -465,7 +463,6 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
   }
 }
 
-/// Computes where the lines enter and leave the solid.
 template <class Kernel>
 HWY_INLINE void follow_lines(const NativeLines& lines) {
   const Solid& s = *lines.solid;

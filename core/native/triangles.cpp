@@ -94,7 +94,6 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
       }
       Wide place = hn::Zero(wide);
       for (int i = 0; i < 3; ++i) {
-        // Edge i is opposite to corner i.
         const int a = (i + 1) % 3, b = (i + 2) % 3;
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),

@@ -62,7 +62,6 @@ struct NearPairs {
   std::vector<TrianglePair> pairs;
 };
 
-/// Counts of the work of searches; they show how well culling works.
 struct ProximityCounts {
   std::uint64_t box_pairs = 0;       // pairs of boxes whose gap was compared with a bound
   std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded

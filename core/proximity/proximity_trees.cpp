@@ -80,7 +80,6 @@ class Approach {
   std::unordered_set<std::uint32_t> given_;  // listed objects that other parts could list again
 };
 
-// What a search found about one other object.
 struct Found {
   double lower = 0;  // bound of the distance, scaled
   double upper = 0;

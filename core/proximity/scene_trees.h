@@ -108,7 +108,6 @@ class SceneTrees {
   const BoxTree<double>& tree(std::uint32_t object) const { return trees_[object]; }
   /// Returns the number, among the leaves of all objects, of leaf k of an object.
   std::uint32_t leaf(std::uint32_t object, std::uint32_t k) const { return of_.first[object] + k; }
-  /// Returns the number of triangles in a leaf.
   std::uint32_t count(std::uint32_t leaf) const { return of_.ranges[place_[leaf]].count; }
   std::uint32_t triangle(std::uint32_t leaf, std::uint32_t k) const {
     return of_.triangle(of_.ranges[place_[leaf]].first + k);

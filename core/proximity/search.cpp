@@ -92,7 +92,6 @@ class Searcher {
     std::uint32_t least(std::size_t height, std::uint32_t k) const {
       return trees.least(object, height, k);
     }
-    // Returns leaf k of the object, and loads it if it is not in the cache `memory`.
     BlockCorners& load(std::vector<BlockCorners>& memory, std::uint32_t k) const {
       const std::uint32_t leaf = trees.leaf(object, k);
       BlockCorners& out = memory[leaf % SearchMemory::kLeaves];
@@ -391,7 +390,6 @@ class Searcher {
     batch.count = 1;
   }
 
-  // Bounds the pairs of the batch.
   HWY_INLINE void flush() {
     PairBatch& batch = memory_.batch;
     if (batch.count == 0) return;

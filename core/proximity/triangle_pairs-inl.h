@@ -25,7 +25,6 @@ static_assert(kWide % kLanes == 0);
 
 HWY_INLINE Number number(double x) { return hn::Set(Numbers(), x); }
 HWY_INLINE Number clamped(Number x) { return hn::Max(number(0), hn::Min(x, number(1))); }
-/// Returns numerator / denominator if the denominator is positive, else 0.
 HWY_INLINE Number ratio(Number numerator, Number denominator) {
   return hn::IfThenElseZero(hn::Gt(denominator, number(0)), hn::Div(numerator, denominator));
 }
@@ -55,7 +54,6 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
 struct Weights {
   Number one, two;
 };
-/// Returns the weights of corner k.
 HWY_INLINE Weights at_corner(int k) { return {number(k == 1), number(k == 2)}; }
 /// Returns the weights of the point at fraction t, in [0, 1], of the edge from corner k to the
 /// next.

@@ -38,7 +38,6 @@ inline Box intersection(const Box& a, const Box& b) {
 /// True iff the closed boxes share a point. An empty box overlaps nothing. Exact, since doubles are
 /// only compared.
 inline bool overlap(const Box& a, const Box& b) { return !intersection(a, b).is_empty(); }
-/// True iff `outer` contains all of `inner`.
 inline bool lies_within(const Box& inner, const Box& outer) {
   return (inner.lo.array() >= outer.lo.array() && inner.hi.array() <= outer.hi.array()).all();
 }
@@ -99,7 +98,6 @@ struct TrianglePair {
   auto operator<=>(const TrianglePair&) const = default;
 };
 
-/// True if the two triangles have a common vertex index.
 inline bool share_index(const std::array<std::uint32_t, 3>& a,
                         const std::array<std::uint32_t, 3>& b) {
   bool shared = false;
@@ -147,7 +145,6 @@ std::vector<std::uint32_t> members_of(std::span<const TrianglePair> pairs, std::
 /// triangles are ascending.
 std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> triangles);
 
-/// True if some object of the scene is marked `self`.
 bool has_self(const Scene& scene);
 
 /// Returns the pairs of both lists, sorted and distinct. If a > b in a pair, exchanges a and b.

@@ -359,7 +359,6 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   return pairs;
 }
 
-/// Sorts order_, for later calls, by the lower ends of the current boxes.
 void SweepPrune::sort_order() {
   std::vector<Key> keys;
   keys.reserve(items_.size());

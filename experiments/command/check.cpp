@@ -84,7 +84,6 @@ std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
   return "";
 }
 
-// The certificate is read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
   if (!arguments.certificate.empty()) {
@@ -116,7 +115,6 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   return status;
 }
 
-// Reads the certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
   const std::string file = numbered(arguments.certificate, frame);
   std::error_code error;

@@ -180,7 +180,6 @@ constexpr const char* kFirstScreen =
     "  farcull run two-tori                       a built-in scene; farcull scenes lists them\n"
     "  farcull compare two-tori                   what each method misses, and its time\n";
 
-// Runs the command that the arguments name. Returns the exit status.
 int dispatch(int argc, char** argv) {
   CLI::App app("", "farcull");
   app.get_formatter()->column_width(28);

@@ -130,7 +130,6 @@ Command add_completion(CLI::App& app);
 // a larger radius.
 Command add_lemma(CLI::App& experiment);
 
-/// The default folder of results.
 inline constexpr const char* kResultsFolder = "farcull-results";
 
 // ---- options, files, outputs and progress ----
@@ -260,7 +259,6 @@ class MethodOptions {
   /// Returns rows for the named options, in the order of the table. If there are no names, returns
   /// rows for all options.
   Rows rows(const std::vector<std::string>& names = {});
-  /// Returns the options that were given.
   GivenOptions given() const;
   const Text& text(const std::string& name) const { return texts_.at(name); }
   bool has(const std::string& name) const { return texts_.at(name) || flags_.at(name); }
@@ -286,14 +284,12 @@ void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
 OptionRow ignore_row(Text& ignore);
 
-/// Returns the help text of an option of a method.
 std::string help_of_option(const std::string& name);
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"
     "or one scene file (.json: farcull help scene-file); or\n"
     "one built-in scene (farcull scenes lists them)";
-/// Returns the argument that names a scene, and the options for reading its meshes.
 Rows scene_rows(SceneArguments& scene, const char* name = "SCENE",
                 const std::string& help = kSceneHelp, Need need = Need::must);
 inline constexpr const char* kNoRiskHelp =
@@ -323,7 +319,6 @@ struct CheckArguments {
 /// only one of list and arguments has frames. Precondition: a certificate or a list is given.
 int run_check(const CheckArguments& arguments);
 
-/// A larger certificate or list is not read.
 constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
 
 Certificate read_certificate(const std::string& path);

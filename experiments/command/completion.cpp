@@ -87,7 +87,6 @@ std::string table_of_values(const DeclaredCommand& program) {
   return out;
 }
 
-// Returns the script for bash.
 std::string bash_script(const DeclaredCommand& program) {
   return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
          fmt::format(

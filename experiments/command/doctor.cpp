@@ -139,7 +139,6 @@ Json limits_json(const GlInfo& gl, int resolution) {
   return out;
 }
 
-// Describes the current floating-point environment and the caller's environment.
 std::string arithmetic_line() {
   const FloatingPoint callers = callers_floating_point();
   return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",

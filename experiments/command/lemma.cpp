@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Returns the numbers of a row for the output.
 Json numbers_json(const LemmaRow& row) {
   return {{"points", row.points},
           {"violations", row.violations()},

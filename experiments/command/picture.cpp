@@ -147,7 +147,6 @@ PictureArguments PictureCommand::arguments() const {
   return out;
 }
 
-// Returns what the page of --html shows. picture: the arguments for a picture.
 PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
   PageArguments out;
   out.picture = picture;

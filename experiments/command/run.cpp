@@ -97,7 +97,6 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
 // that of the closed object, and the surfaces do not meet. Empty if there are no such objects, or
 // if more than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record) {
-  // Finds the pairs of objects whose boxes overlap.
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
   std::iota(all.begin(), all.end(), 0u);
@@ -266,13 +265,11 @@ class RunCommand {
     }
     return in_order(std::move(out));
   }
-  // Returns the files that the command reads.
   std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const {
     std::vector<NamedFile> out = scene_files(scene_.names, range);
     if (const Text& file = options_.text("ignore_file")) out.push_back({"--ignore-file", *file});
     return out;
   }
-  // Returns the command line with --self, for a scene of one object.
   std::string with_self() const {
     std::string command = kCommands[static_cast<std::size_t>(kind_)][0];
     command = command_with("farcull " + command, scene_);
@@ -289,7 +286,6 @@ class RunCommand {
     const Colour colour = accounting.false_negatives == 0 ? Colour::good : Colour::bad;
     return coloured(verdict_text(accounting), colour, STDOUT_FILENO) + "\n";
   }
-  // Throws Error if an option cannot be combined with tiles.
   void refuse_with_tiles(const RunOptions& options) const {
     const auto refuse = [](const std::string& option, bool given, const std::string& why) {
       if (!given) return;

@@ -31,7 +31,6 @@ std::string left_text(const StudiesProgress& p) {
   return p.remaining_s ? ", " + duration(*p.remaining_s) + " left" : "";
 }
 
-// Returns the line that shows progress on a terminal.
 std::string bar_of(const StudiesProgress& p) {
   constexpr std::size_t kWidth = 20;
   const std::size_t full = p.points > 0 ? kWidth * p.done / p.points : kWidth;

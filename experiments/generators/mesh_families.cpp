@@ -267,7 +267,6 @@ void join_vertices(SuiteObject& object) {
 // parallel to an axis of the coordinates, and coordinates have few bits, so that contacts are
 // exact.
 
-/// A box of 12 triangles, oriented outwards.
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
   SuiteObject out;
   for (int i = 0; i < 8; ++i) {

@@ -35,7 +35,6 @@ class RandomDraws : public shapes::Random {
     const double z = whole(-extent, extent);
     return {x, y, z};
   }
-  /// Returns a point in the cube [-1, 1]^3.
   Vec3 point() { return in_cube(1); }
 };
 
@@ -94,7 +93,6 @@ const std::vector<PairFamily>& pair_families();
 /// Returns the seed for one item of a suite. seed: the seed of the suite.
 std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number);
 
-/// An object of a mesh.
 struct SuiteObject {
   std::vector<Vec3> vertices;                           // finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices; not empty
