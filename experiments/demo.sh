@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The main job in one command, on a machine with nothing but Debian and a checkout.
+# Demonstrates farcull in one command, on a machine with only Debian and a checkout.
 # 1. Installs the packages that are missing, builds the program (no tests), fetches real meshes meanwhile.
 # 2. Compares FAR, CULLIDE, boxes and the method exact on two bunnies that interpenetrate, and
 #    prints a table. Exact predicates check every pair that a method culled.
@@ -32,7 +32,7 @@ esac
 
 mkdir -p build/demo
 results=build/demo/compare.json
-rm -f "$results" # an old record must not be mistaken for a new one
+rm -f "$results" # so that an old record is not taken for a new one
 echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
 build/farcull compare "$scene" --json "$results" || status=$?
@@ -54,7 +54,7 @@ step() {
 }
 
 picture=build/demo/compare.png
-# Each commit has a store of its own, since a store refuses rows of another commit.
+# Each commit has its own store, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
 studies=build/demo/results-${commit##* }
 rm -f "$picture"

@@ -14,7 +14,7 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-# The drivers, their environments, and what they are.
+# The drivers, their environments, and their descriptions.
 drivers=(llvmpipe llvmpipe-128 zink softpipe softpipe-4.5 noop)
 declare -A settings=(
   [llvmpipe]="GALLIUM_DRIVER=llvmpipe"
@@ -73,10 +73,10 @@ fi
 mkdir -p "$out"
 export LC_ALL=C
 unset "${!MESA_@}" "${!GALLIUM_@}" "${!LP_@}" "${!EGL_@}" "${!__EGL_@}" VK_DRIVER_FILES
-# Mesa takes any Gallium driver for its software device only where this is set.
+# Without this variable, Mesa does not use every Gallium driver for its software device.
 export LIBGL_ALWAYS_SOFTWARE=true
 
-# under DRIVER COMMAND...: runs the command with this driver. Verdicts are cached for each driver and program.
+# under DRIVER COMMAND...: runs the command with this driver. Each driver has a cache of verdicts.
 under() {
   local -a variables
   read -ra variables <<<"${settings[$1]}"
@@ -84,7 +84,7 @@ under() {
 }
 sql() { sqlite3 -separator ' | ' :memory: "$@"; }
 
-# measure DRIVER: writes doctor.json or refused, and results/ of the study.
+# measure DRIVER: writes the file doctor.json or refused, and the folder results/ of the study.
 measure() {
   local -i status=0
   local folder=$out/$1
@@ -105,7 +105,7 @@ measure() {
   status=0
   under "$1" timeout 3600 "$program" experiment radius --quick --resume --device software --out "$folder/results" \
     >"$folder/study.txt" 2>"$folder/study.said" || status=$?
-  # Status 2: some points have no answer, and the study names them. The other rows are used.
+  # Status 2 means that some points of the study have no answer. The other points are used.
   if ((status > 2)); then
     echo "drivers: $1: the study ended with status $status; $folder/study.said says why" >&2
     return 2
@@ -114,7 +114,7 @@ measure() {
 }
 
 assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9)
-# The probe of A10 is about threads of the driver, not about what it draws, so noop passes it.
+# noop passes the probe of A10, which is about threads of the driver and not about drawing.
 drawn_probes="p.value ->> 'assumption' <> 'A10'"
 probes_table() {
   local driver json
@@ -140,7 +140,7 @@ broken_table() {
   echo '| driver | probe that fails | measured | bound | unit |'
   echo '|---|---|---|---|---|'
   for driver in "${chosen[@]}"; do
-    # All probes of noop fail.
+    # noop is left out, since all its probes fail.
     if [[ ! -e $out/$driver/doctor.json || $driver == noop ]]; then continue; fi
     sql "SELECT '| $driver', (p.value ->> 'assumption') || ' ' || (p.value ->> 'name'),
       CASE WHEN p.value ->> 'samples' = 0 OR p.value ->> 'unit' = '' THEN 'broke off: ' || replace(p.value ->> 'note', '|', '/')
@@ -150,7 +150,7 @@ broken_table() {
   done
 }
 # For each of the two radii: how many colliding pairs FAR missed, and at how many points the lemmas are broken.
-# Leaves out rows of the native canvas and of models of a device, which are the same for all drivers.
+# Rows of the native canvas and of device models are left out, since they are the same for all drivers.
 drawn="device NOT IN ('cpu', 'native')"
 missed_table() {
   local driver store
@@ -211,7 +211,7 @@ for driver in "${chosen[@]}"; do
   fi
 done
 if [[ -n $whole && -z $probes_only ]] && ((status == 0)) && [[ -d $farcull_root/docs ]]; then
-  # Keeps the text of the page up to the mark.
+  # Keeps the lines of the page down to the first that begins with "<!-- ".
   page=$farcull_root/docs/results/drivers.md
   { sed '/^<!-- /q' "$page"; echo; cat "$out/results.md"; } >"$out/page.md"
   cp "$out/page.md" "$page"

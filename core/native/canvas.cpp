@@ -15,15 +15,15 @@
 namespace farcull {
 namespace {
 
-constexpr int kMostPixels = 16380;    // a side; its viewport is 2^14
-constexpr std::size_t kLeast = 2048;  // draws; with fewer, another thread costs more than it saves
+constexpr int kMostPixels = 16380;    // per side of a window, whose viewport has 2^14
+constexpr std::size_t kLeast = 2048;  // draws per thread; a thread costs more than fewer would save
 
 }  // namespace
 
 RasterLimits native_limits(int depth_bits) {
   return {.subpixel_bits = kNativeSubpixelBits,
           .depth_bits = depth_bits,
-          .max_resolution = kMostPixels - 5,  // a window has up to 5 px more (fit_window)
+          .max_resolution = kMostPixels - 5,  // fit_window() adds up to 5 px
           .exact_samples = true};
 }
 
@@ -44,7 +44,7 @@ NativeCanvas::NativeCanvas(DepthMode mode, const SolidProgram& solid,
 }
 
 void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
-  drawables_ = nullptr;  // until everything is ready
+  drawables_ = nullptr;
   if (drawables.mode != mode_) throw std::logic_error("NativeCanvas: drawables of the other mode");
   for (const int side : {window.width, window.height}) {
     if (side < 1 || side > kMostPixels)
@@ -55,7 +55,7 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
   const std::size_t count = drawables.elements(), unknown = waiting ? 0 : count;
   ranges_.resize(proxies ? 0 : count);
   outlines_.resize(proxies ? unknown : 0);
-  // Snapping moves a corner by half a subpixel, and a pixel reaches half its side from its centre.
+  // In px. Snapping moves a corner by at most 2^-9. A pixel's square extends 0.5 from its centre.
   const double reach = options_.conservative ? 0x1p-8 + 0.5 : 0x1p-8;
   for_chunks(unknown, chunks_for(unknown, 4 * kLeast, options_.threads),
              [&](std::size_t, std::size_t from, std::size_t to) {

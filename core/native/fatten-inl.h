@@ -1,7 +1,7 @@
-// Fattens the triangles that lie inside the region, one on each lane. A fit is a type with
+// Fattens the triangles that lie inside the region, one on each lane. A fit (offsets/lanes.cpp) is
+// a type with these functions on lanes:
 //   rectangle(p, radius, bound_x, bound_y, corners), solid(p, radius, numbers) and
 //   depths(p, radius, nearest and farthest)
-// on lanes (offsets/lanes.cpp).
 #if defined(FARCULL_NATIVE_FATTEN_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_FATTEN_INL_H_
 #undef FARCULL_NATIVE_FATTEN_INL_H_
@@ -22,20 +22,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 
-/// Reads the corners of a triangle into the cache before it is fattened.
 HWY_INLINE void prefetch_corners(const Scene& scene, std::uint32_t item) {
   for (const std::uint32_t vertex : scene.triangles[item]) hwy::Prefetch(&scene.vertices[vertex]);
 }
 
-/// corners[3 k + i]: coordinate i of corner k of the triangles `items`, one on each lane. If there
-/// are fewer than kWide, the last one is repeated.
+/// Sets corners[3 k + i] to coordinate i of corner k of the triangles `items`, one on each lane. If
+/// `count` is below kWide, the last triangle is repeated.
 HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, int count,
                                WideLane (&corners)[9]) {
   const auto vertex = [&](int lane, int k) HWY_ATTR {
     return scene.vertices[scene.triangles[items[std::min(lane, count - 1)]][k]].data();
   };
 #if HWY_TARGET <= HWY_AVX2
-  // Three coordinates are one load; four vertices are transposed at a time.
+  // One load reads the three coordinates of a vertex. Four vertices are transposed at a time.
   const hn::FixedTag<double, 4> four;
   const auto three = hn::FirstN(four, 3);
   using Four = hn::Vec<decltype(four)>;
@@ -72,11 +71,11 @@ HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, i
 #endif
 }
 
-/// The images of kWide triangles, by the operations of to_pixel() (core/view/view.h) in their
-/// order.
+/// The images of kWide triangles. The operations and their order are those of to_pixel()
+/// (core/view/view.h).
 struct WidePixels {
   dvec3 p[3];
-  WideLane error = 0.0;  // px; the largest of the corners
+  WideLane error = 0.0;  // px; the largest error of a corner
 
   HWY_INLINE WidePixels(const Window& window, const WideLane (&corners)[9]) {
     for (int k = 0; k < 3; ++k) {
@@ -122,7 +121,7 @@ struct WideOutlines {
     Fit::depths(pixels.p, batch.radius, depths);
     out.nearest = depths[0];
     out.farthest = depths[1];
-    // The pixel of the farthest corner.
+    // Finds the farthest corner; x and y become the pixel that contains it.
     dvec3 corner = pixels.p[0];
     for (int k = 1; k < 3; ++k) {
       const WideBool behind = pixels.p[k].z > corner.z;
@@ -138,7 +137,8 @@ struct WideOutlines {
                              out.x >= 0.0 && out.y >= 0.0 && out.x < half_x + half_x &&
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
-    // A float that is surely before the corner: a double errs by 2^-53, a float by 2^-24.
+    // Rounding to double errs by 2^-53 of the value, to float by 2^-24. So this depth is surely
+    // less than the corner's.
     out.depth = farcull::HWY_NAMESPACE::nearest(
         corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
     return out;
@@ -146,7 +146,7 @@ struct WideOutlines {
 
  private:
   static HWY_INLINE WideLane floored(WideLane a) { return WideLane(hn::Floor(a.v)); }
-  /// As pixel_range() (core/canvas/fatten.h), along one axis.
+  /// Does the same as pixel_range() (core/canvas/fatten.h), but along one axis.
   static HWY_INLINE void range(WideLane a, WideLane b, WideLane c, WideLane d, int size,
                                WideLane& from, WideLane& to) {
     const WideLane half(0.5 * size), most(size);
@@ -162,7 +162,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   HWY_ALIGN float depths[3][kWide];
   const WideLane* const pixel_of[6] = {&of.x0, &of.x1, &of.y0, &of.y1, &of.x, &of.y};
   for (int i = 0; i < 6; ++i) {
-    // If a triangle is not inside, its numbers may be anything. Those that do not fit become 0.
+    // A triangle outside the region may have any numbers here. Numbers that do not fit become 0.
     const WideLane a = *pixel_of[i];
     const WideLane fitting = select(a >= 0.0 && a <= WideLane(65535.0), a, 0.0);
     hn::Store(hn::DemoteTo(whole, fitting.v), whole, pixels[i]);
@@ -183,7 +183,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   }
 }
 
-/// Stores kWide proxies, each 28 floats: those of `found`, one on each lane.
+/// Stores `lanes` proxies. A proxy is 28 floats; its lane of `found` holds them.
 HWY_INLINE void store_proxies(const WideLane (&found)[28], int lanes, Proxy* out) {
   static_assert(sizeof(Proxy) == 28 * sizeof(float));
   HWY_ALIGN float four[7][kWide][4];
@@ -198,7 +198,7 @@ HWY_INLINE void store_proxies(const WideLane (&found)[28], int lanes, Proxy* out
   }
 }
 
-/// Does Fattener::fatten_inside (core/canvas/fatten.h) with this Fit.
+/// Implements Fattener::fatten_inside (core/canvas/fatten.h) with this Fit.
 template <class Fit>
 HWY_INLINE void fatten_batch(const FattenBatch& batch) {
   HWY_ALIGN double in[kWide];

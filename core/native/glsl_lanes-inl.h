@@ -1,7 +1,7 @@
-// Lets a kernel file (*.glsl) compile for the lanes of a vector processor: `float` stands for Lane,
-// a vector of floats, one pixel a lane. Every operation is that of core/base/glsl_shim.h, lane by
-// lane, rounded once, so the bits are the same. Compiled once for each instruction set that Google
-// Highway can choose between (hwy/foreach_target.h). Include a kernel between
+// Lets a kernel file (*.glsl) compile for the lanes of a vector processor. `float` then stands for
+// Lane, a vector of floats with one pixel on each lane. Every operation rounds once on each lane,
+// as in core/base/glsl_shim.h, so the bits are the same. This file is compiled once for each
+// instruction set of Google Highway (hwy/foreach_target.h). Include a kernel between
 // `#define float Lane` and `#undef float`, as offsets/lanes.cpp does.
 #if defined(FARCULL_NATIVE_GLSL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_GLSL_LANES_INL_H_
@@ -50,8 +50,8 @@ struct LaneOf {
   friend HWY_INLINE BoolOf<D> operator>(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Gt(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator<=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Le(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator>=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Ge(a.v, b.v)); }
-  // min is b < a ? b : a, and max is a < b ? b : a, also for zeros and NaNs. On x86 each is one
-  // instruction with the operands exchanged.
+  // min is b < a ? b : a, and max is a < b ? b : a, even for zeros and NaNs. x86 has an instruction
+  // for each function, with the operands exchanged.
   friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     return LaneOf(hn::Min(b.v, a.v));
@@ -76,7 +76,7 @@ using LaneVector = hn::Vec<LaneTag>;
 using Lane = LaneOf<LaneTag>;
 using Bool = BoolOf<LaneTag>;
 HWY_INLINE Lane select(Bool c, Lane a, Lane b) { return Lane(hn::IfThenElse(c.mask, a.v, b.v)); }
-/// The common value of all lanes. Precondition: they have one.
+/// Returns the value of the lanes. Precondition: all lanes have the same value.
 HWY_INLINE bool of_all(Bool c) { return hn::AllTrue(LaneTag(), c.mask); }
 
 struct vec2 {
@@ -86,8 +86,8 @@ struct vec4 {
   Lane x, y, z, w;
 };
 
-// Lanes of doubles, for source files that compute in double (offsets/fit.inl): there `double`
-// stands for WideLane, and each lane holds one triangle.
+// Lanes of doubles, for source files that compute in double (offsets/fit.inl). In such a file
+// `double` stands for WideLane, and each lane holds one triangle.
 using PlainDouble = double;  // the type double where `double` stands for WideLane
 using WideTag = hn::CappedTag<double, 8>;
 using NarrowTag = hn::Rebind<float, WideTag>;
@@ -98,7 +98,7 @@ constexpr int kWide = static_cast<int>(hn::MaxLanes(WideTag()));
 HWY_INLINE WideLane select(WideBool c, WideLane a, WideLane b) {
   return WideLane(hn::IfThenElse(c.mask, a.v, b.v));
 }
-/// Rounded to float.
+/// Returns the float nearest to each lane.
 HWY_INLINE WideLane nearest(WideLane a) {
   return WideLane(hn::PromoteTo(WideTag(), hn::DemoteTo(NarrowTag(), a.v)));
 }

@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// The instruction sets that were compiled and that the processor has, best first: in Highway's
-// masks lower bits are better.
+// Returns the instruction sets that were compiled and that the processor has, the best first. In
+// Highway's masks, a lower bit stands for a better instruction set.
 std::vector<std::int64_t> usable() {
   std::vector<std::int64_t> found;
   const std::int64_t both = hwy::SupportedTargets() & HWY_TARGETS;

@@ -1,8 +1,9 @@
-// Draws elements in blocks of pixels, one pixel on each lane. Their fragments are stored as depths,
-// or answer an ask. A block is 4 pixels wide if there are 4 lanes or more, since the proxies
-// of culling are small. Proxies are drawn with a solid's kernel: a type with
-//   interval(c, s0, .., s4, entry, exit): its solid_interval on lanes;
-//   nearest(solid), farthest(solid): depths (px); no entry is before and no exit behind.
+// Draws elements in blocks of pixels, one pixel on each lane. A fragment's depth is stored, or
+// compared with the buffer to answer Verb::ask. A block is 4 pixels wide if there are 4 lanes or
+// more, since most proxies are small. A solid's kernel draws proxies. It is a type with
+//   interval(c, s0, .., s4, entry, exit): the solid's solid_interval on lanes;
+//   nearest(solid): a depth (px) that no entry is before;
+//   farthest(solid): a depth (px) that no exit is behind.
 #if defined(FARCULL_NATIVE_PROXIES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_PROXIES_INL_H_
 #undef FARCULL_NATIVE_PROXIES_INL_H_
@@ -30,8 +31,8 @@ constexpr int kBlockHeight = kLanes / kBlockWidth;
 static_assert(kLanes == 1 || kLanes % 4 == 0);
 static_assert(kBlockWidth <= kNativeOverhang && kBlockHeight <= kNativeOverhang);
 
-/// kBlockHeight rows of kBlockWidth floats. Only the first `rows` belong to this thread. The others
-/// are not touched: rows of this thread are loaded again in their place.
+/// Load and store a block: kBlockHeight rows of kBlockWidth floats. Only its first `rows` rows
+/// belong to this thread. Other rows are not touched: a row of this thread is loaded instead.
 #if HWY_TARGET == HWY_SCALAR
 template <int kCount>
 HWY_INLINE LaneVector load_rows(const float* at, int, int) {
@@ -111,7 +112,8 @@ HWY_INLINE bool already_seen(std::uint8_t* seen, std::uint32_t slot) {
   return std::atomic_ref<std::uint8_t>(seen[slot]).load(std::memory_order_relaxed) != 0;
 }
 
-/// Draws the covered fragments of depth z (px). True: they are asked, and one is seen.
+/// Draws the covered fragments of depth z (px). Returns true if the verb is Verb::ask in a run, and
+/// a fragment is seen.
 HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, Lane z, float* at,
                                int rows) {
   const Lane old = Lane(load_rows<kLanes>(at, job.stride, rows));
@@ -125,8 +127,8 @@ HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, La
   return false;
 }
 
-/// Draws the nearest quad over the whole window in the rows of the job: stores or asks depth 0.
-/// True: asked, and seen.
+/// Draws depth 0, the nearest, in all pixels of the job's rows. Returns true if the verb is
+/// Verb::ask in a run, and a fragment is seen.
 inline bool take_everywhere(const NativeJob& job, Verb verb) {
   bool seen = false;
   for (int y = job.y0; y < job.y1; ++y) {
@@ -144,8 +146,8 @@ inline bool take_everywhere(const NativeJob& job, Verb verb) {
   return seen;
 }
 
-/// Calls visit(element, verb), which returns whether it is seen, for the draws of a job in order. A
-/// slot that was seen is not asked again.
+/// Calls visit(element, verb) for the draws of a job in order. visit returns true if the element is
+/// seen. Draws of Verb::ask are left out if their slot has been seen.
 template <class Visit>
 HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
@@ -178,9 +180,9 @@ struct ProxyEdges {
       dy[i] = turn * (y[(i + 1) % 4] - y[i]);
     }
   }
-  /// Which of kLanes blocks in a row may have a covered pixel. cx, cy: the lower left pixel centre
-  /// of the first block. The test enlarges each block by a pixel on each side. Rounding errors are
-  /// far smaller, so no such block is lost.
+  /// True for the blocks, of kLanes blocks in a row, that may have a covered pixel. cx, cy: the
+  /// lower left pixel centre of the first block. The test enlarges each block by a pixel on each
+  /// side. Rounding errors are far smaller, so no block with a covered pixel is lost.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();
     const Lane right = left + Lane(static_cast<Plain>(kBlockWidth + 1));
@@ -203,7 +205,8 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws a proxy in the rows of the job. True: it is asked, and seen.
+/// Draws a proxy in the rows of the job. Returns true if the verb is Verb::ask in a run, and a
+/// fragment is seen.
 template <class Kernel>
 HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const PixelRange& range,
                            Verb verb) {
@@ -211,15 +214,14 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
-  // If not even the solid's nearest (store) or farthest (ask) depth changes a block, its lines need
-  // not be followed: the depth map is monotone, so no depth along them changes it either.
+  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). A block that this
+  // depth does not change is left out: the depth map is monotone, so no fragment would change it.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const Plain half_width = 0.5f * static_cast<Plain>(job.width);
   const Plain half_height = 0.5f * static_cast<Plain>(job.height);
   const Lane last_x(static_cast<Plain>(range.x1) - 0.5f - half_width);
   const Lane last_y(static_cast<Plain>(y1) - 0.5f - half_height);
-  // Draws one block. True: it is asked, and seen.
   const auto draw_block = [&](int x, int y) HWY_ATTR {
     float* const at = job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x;
     const Lane cx = Lane(static_cast<Plain>(x) + 0.5f - half_width) + lane_columns();
@@ -230,13 +232,13 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
       covered = covered && (verb == Verb::store ? bound < old : bound >= old);
     }
     if (!any(covered)) return false;
-    // The solid is read here, since most blocks end above and twenty vectors fill all registers.
+    // The solid is read as late as here, because its twenty vectors fill all registers. Most blocks
+    // need no solid, since they return above.
     Lane entry, exit;
     covered = covered && Kernel::interval({cx, cy}, uniform(s[0]), uniform(s[1]), uniform(s[2]),
                                           uniform(s[3]), uniform(s[4]), entry, exit);
     return take_fragments(job, verb, covered, verb == Verb::store ? entry : exit, at, y1 - y);
   };
-  // Many blocks in a row are tested against the edges together.
   const bool many = kLanes > 1 && range.x1 - range.x0 > 2 * kBlockWidth;
   for (int y = y0; y < y1; y += kBlockHeight) {
     if (!many) {
@@ -257,9 +259,9 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   return false;
 }
 
-// Most proxies are decided by their outlines; the others wait, and are fitted and drawn together.
+// The outlines decide most proxies. The other proxies wait, and are fitted and drawn in groups.
 
-/// True: the proxy is seen in a pixel that it certainly covers.
+/// True if the proxy is seen in a pixel that it certainly covers.
 HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
   if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
   Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
@@ -268,9 +270,9 @@ HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline)
   return job.touching ? depth >= old : depth > old;
 }
 
-/// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows until it
-/// returns true, and returns whether it did. at: index of the block's first pixel in job.depth.
-/// rows, columns: how many are left from there to the end of the range.
+/// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows, until a call
+/// returns true. Returns true if a call did. at: index of the block's first pixel in job.depth.
+/// rows, columns: their number from that pixel to the end of the range.
 template <class Visit>
 HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
@@ -285,15 +287,15 @@ HWY_INLINE Bool inside_block(int rows, int columns) {
   return lane_rows() < Lane(static_cast<Plain>(rows)) &&
          lane_columns() < Lane(static_cast<Plain>(columns));
 }
-/// Whether a proxy is so small that its blocks are looked at before it is fitted.
+/// True if a proxy is so small that may_change() examines the blocks of its range.
 HWY_INLINE bool is_small(const PixelRange& range) {
   constexpr int kMostBlocks = 4;  // in a row and in a column
   return range.x1 - range.x0 <= kMostBlocks * kBlockWidth &&
          range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
 }
 
-/// False: not even the proxy's nearest (store) or farthest (ask) depth changes a pixel of its
-/// range.
+/// False if the proxy changes no pixel: neither its nearest depth (Verb::store) nor its farthest
+/// (Verb::ask) would change a pixel of its range.
 HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
   if (!is_small(outline.range)) return true;
   const Lane bound = held_depth(
@@ -305,7 +307,7 @@ HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Ve
   });
 }
 
-/// Proxies of one step that no outline decided.
+/// Proxies of one step that their outlines did not decide.
 template <class Kernel>
 class WaitingProxies {
  public:
@@ -365,8 +367,8 @@ class WaitingProxies {
 struct DrawRun {
   std::uint32_t first, count;
 };
-/// Reads into the cache what the runs after `now` need. Sorted runs lie anywhere in the memory, and
-/// each step needs what the one before it has read.
+/// Reads into the cache what the three runs after `now` need. Sorted runs lie anywhere in memory.
+/// The draws, their outlines and their triangles are read in this order, each one call later.
 HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& runs,
                               std::size_t now) {
   const Drawables& from = *job.drawables;
@@ -388,9 +390,9 @@ HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& 
       hwy::Prefetch(&from.batch.scene->triangles[from.sources[element]]);
   });
 }
-/// Cuts the draws of a store step into runs and sorts these, the nearest first. Any order leaves
-/// the same depths; in this one, most draws that lie behind others change nothing. Leaves out runs
-/// that do not reach the job's rows.
+/// Cuts the draws of a store step into runs and sorts the runs, the nearest first. Any order leaves
+/// the same depths. In this order, most draws that lie behind others change nothing. Leaves out
+/// runs without a pixel in the job's rows.
 inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
   constexpr std::uint32_t kRun = 16, kBuckets = 512;
   const std::uint32_t runs = (step.count + kRun - 1) / kRun;
@@ -461,7 +463,6 @@ HWY_INLINE void draw_proxies(const NativeJob& job) {
   }
 }
 
-/// Calls the kernel for single lines.
 template <class Kernel>
 HWY_INLINE void follow_lines(const NativeLines& lines) {
   const Solid& s = *lines.solid;

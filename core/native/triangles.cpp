@@ -1,7 +1,7 @@
-// Snapped corners and edge functions are whole numbers, which doubles hold exactly. So it is
-// certain whether a pixel centre is inside, outside or on an edge. It is also certain whether a
-// pixel's square meets a triangle: if not, an axis of the pixel or the normal of an edge separates
-// the two.
+// Snapped corners and edge functions are integers, which doubles hold exactly. So it is certain
+// whether a pixel centre is inside, outside or on an edge. It is certain, too, whether a pixel's
+// square meets a triangle. If they do not meet, they are separated along an axis of the pixel or
+// the normal of an edge.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -25,7 +25,8 @@ HWY_INLINE Wide columns() {
   return hn::Mul(hn::Load(WideTag(), kColumns), hn::Set(WideTag(), kSubpixels));
 }
 
-/// Corners in subpixels from the window's lower left corner, counterclockwise, and their depths.
+/// The corners of a triangle, counterclockwise, in subpixels from the window's lower left corner.
+/// place: their mapped depths.
 struct SnappedTriangle {
   double x[3], y[3], place[3];
   double area = 0;  // doubled, in square subpixels; if 0, only `conservative` draws it
@@ -47,7 +48,8 @@ struct SnappedTriangle {
   }
 };
 
-/// Draws the covered ones of kWide pixels from `at` on. True: they are asked, and one is seen.
+/// Draws into the covered pixels among the kWide pixels from `at` on. Returns true if the verb is
+/// Verb::ask in a run, and a fragment is seen.
 HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<WideTag> covered,
                          float* at) {
   const NarrowTag narrow;
@@ -65,8 +67,8 @@ HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<W
   return false;
 }
 
-/// Draws an element in the rows of the job; kTouched: with a fragment in every pixel that the
-/// triangle touches. True: asked, and seen.
+/// Draws an element in the rows of the job. kTouched: the triangle has a fragment in every pixel
+/// that it touches. Returns what take_row() returns.
 template <bool kTouched>
 HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
@@ -74,7 +76,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
   if (y0 >= y1) return false;
   const SnappedTriangle t(job, job.drawables->triangles[element]);
   if (!kTouched && t.area == 0) return false;
-  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // half a pixel's side; 0: its centre
+  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // half a pixel's side, or 0
   const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
   const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
@@ -92,12 +94,11 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
       }
       Wide place = hn::Zero(wide);
       for (int i = 0; i < 3; ++i) {
-        // Edge i is opposite to corner i.
         const int a = (i + 1) % 3, b = (i + 2) % 3;
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
                                   hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        // A corner of the pixel is farther inside than its centre by at most this.
+        // The edge function at a corner of a pixel exceeds that at its centre by at most this.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
         const Wide least = hn::Set(wide, -reach);
         const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge owns its points

@@ -1,8 +1,7 @@
-// ProximityTrees of near_pairs.h. Each question is a search (core/proximity/scene_trees.h).
-// Searches run in parallel; a long one is divided. For the nearest objects of an object, it is
-// compared with the others in the order of the gaps of their parts, until a gap is above the k-th
-// least upper bound so far. For all pairs within a distance, each object is compared with those
-// that follow it.
+// Each question is a search (core/proximity/scene_trees.h). Searches run in parallel; a long search
+// is divided. nearest_objects() compares an object with the others in the order of the gaps of
+// their parts, until a gap is above the k-th least upper bound so far. pairs_within() compares an
+// object with the objects that have higher numbers.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -29,9 +28,9 @@ double square_of_gap(const Box& a, const Box& b) {
   return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
 }
 
-// Gives all objects, this one included, in the order of the least gap between their parts and the
-// parts of this object. At equal gaps, the object with the lower number comes first. All numbers
-// are in scaled units (core/proximity/scene_trees.h).
+// Lists all objects, the given object included, in the order of the least gap between their parts
+// and the parts of the given object. At equal gaps, the object with the lower number comes first.
+// Gaps are in scaled units (core/proximity/scene_trees.h).
 class Approach {
  public:
   Approach(const SceneTrees& trees, std::uint32_t object)
@@ -39,7 +38,8 @@ class Approach {
     for (std::uint32_t part = 0; part < parts_.size(); ++part)
       queue_.push({0, trees.objects().levels, 0, part});
   }
-  // False if no object is left, or the squared gap of the next one is above the limit.
+  // Returns false if no object is left, or if the squared gap of the next object is above the
+  // limit.
   bool next(double square_limit, std::uint32_t& object) {
     while (!queue_.empty() && queue_.top().square <= square_limit) {
       const Node at = queue_.top();
@@ -67,9 +67,9 @@ class Approach {
   struct Node {
     double square;
     int height;
-    std::uint32_t k;                           // of height 0: the object
-    std::uint32_t part;                        // which part of this object
-    bool operator<(const Node& other) const {  // the nearest one is the top
+    std::uint32_t k;                           // number of the node; at height 0, of the object
+    std::uint32_t part;                        // a part of the given object
+    bool operator<(const Node& other) const {  // the top of the queue is the nearest node
       if (square != other.square) return square > other.square;
       return height != other.height ? height < other.height : k > other.k;
     }
@@ -77,14 +77,13 @@ class Approach {
   const SceneTrees& trees_;
   std::span<const Box> parts_;
   std::priority_queue<Node> queue_;
-  std::unordered_set<std::uint32_t> given_;  // objects given so far, if of several pairs of parts
+  std::unordered_set<std::uint32_t> given_;  // listed objects that other parts could list again
 };
 
-// What a search found about one other object.
 struct Found {
-  double lower = 0;  // scaled, of the distance
+  double lower = 0;  // bound of the distance, scaled
   double upper = 0;
-  double limit = 0;  // of the search
+  double limit = 0;
   NearPairs near;
 };
 
@@ -95,7 +94,7 @@ void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
   }
 }
 
-// The k-th least upper bound: k other objects are at most that far.
+// Returns the k-th least upper bound. At least k other objects are at most that far away.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
   std::vector<double> upper;
@@ -105,10 +104,11 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// All triangles of a scene as one object. Small objects (one leaf) are searched with it if very
-// many parts overlap: searches with one object after the other would take quadratic time.
+// All triangles of a scene as one object, the crowd. If very many parts of objects overlap, a small
+// object (one leaf) is compared with the crowd. Comparing it with each other object would take
+// quadratic time.
 struct Crowd {
-  static constexpr std::size_t kOverlaps = 16;  // pairs of parts that overlap, per object
+  static constexpr std::size_t kOverlaps = 16;  // with more pairs of parts per object, it is used
 
   static bool is_small(const SceneTrees& trees, std::uint32_t object) {
     return trees.tree(object).leaves == 1;
@@ -145,11 +145,11 @@ struct Crowd {
 
 struct NearestMemory {
   SearchMemory of_two;
-  std::optional<SearchMemory> of_all;  // made at the first search with all triangles
+  std::optional<SearchMemory> of_all;  // made at the first search in the crowd
 };
 
-// The others that may be among an object's k nearest, ascending. Lowers the limit to a bound of the
-// k-th distance. ties: as in Others.
+// Returns the other objects that may be among an object's k nearest, ascending. Lowers `limit` to
+// an upper bound of the k-th distance. ties: as in Others.
 std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& crowd,
                                        std::uint32_t object, std::size_t k, bool ties,
                                        double& limit, SearchMemory& memory,
@@ -175,15 +175,15 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
   return out;
 }
 
-// The others that may be among the k nearest of an object. crowd: null if the object is compared
-// with one other after the other. hints: those that name the object, sorted. all: includes others
-// that are as near as the k-th and have higher numbers.
+// Returns the other objects that may be among the k nearest of an object. crowd: null if the object
+// is compared with each other object. hints: the hints that name the object, sorted. all: true to
+// include others with higher numbers that are as near as the k-th.
 std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,
                             std::size_t k, double limit, std::span<const NearHint> hints, bool all,
                             NearestMemory& both, ProximityCounts& counts) {
   SearchMemory& memory = both.of_two;
   std::vector<Found> out;
-  std::vector<Search> begun;  // by hints; sorted by objects
+  std::vector<Search> begun;  // one per hint, sorted by objects
   for (const NearHint& hint : hints) {
     begun.push_back(begin_search(trees, hint.objects, limit, &hint.triangles, memory));
     counts.triangle_pairs += begun.back().counts.triangle_pairs;
@@ -215,7 +215,7 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
     if (hinted != begun.end() && hinted->objects == objects) {
       search = std::move(*hinted);
       search.limit = most;
-      search.counts = {};  // were added above
+      search.counts = {};  // they were added above
     } else {
       search = begin_search(trees, objects, most, nullptr, memory);
     }
@@ -231,8 +231,8 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
       std::ranges::pop_heap(least);
       least.pop_back();
     }
-    // Others with a gap of 0 come in ascending order. Once k of them meet this object, the rest are
-    // no nearer, and have higher numbers.
+    // Others with a gap of 0 come in ascending order. Once k others meet this object, later others
+    // are no nearer, and have higher numbers.
     meeting += found.upper == 0;
     out.push_back(std::move(found));
     if (!all && meeting == k) break;
@@ -241,10 +241,10 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
   return out;
 }
 
-// Pairs of leaves examined between two counts: at most 16,384 pairs of triangles.
+// This many pairs of leaves, at most 16,384 pairs of triangles, are examined between two counts.
 constexpr std::size_t kBetweenCounts = 64;
 
-// Counts the pairs of all threads. Throws `error` if they are more than `most`.
+// Counts the pairs of all threads. add() throws `error` if the count exceeds `most`.
 class Count {
  public:
   Count(std::size_t most, Error error) : most_(most), error_(std::move(error)) {}
@@ -272,8 +272,8 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.add_work(search.counts);
 }
 
-// Calls visit(other) for each later object whose parts are at most `limit` (scaled) from parts of
-// the object, and for the object itself if it is `self`.
+// Calls visit(other) for each object with a higher number that has a part at most `limit` (scaled)
+// from a part of `object`. Calls visit(object) if the object is marked `self`.
 template <class Visit>
 void for_later_within(const SceneTrees& trees, std::uint32_t object, double limit,
                       const Visit& visit) {
@@ -287,7 +287,7 @@ void for_later_within(const SceneTrees& trees, std::uint32_t object, double limi
 bool has(const Object& object, std::uint32_t triangle) {
   return triangle - object.first_triangle < object.triangle_count;
 }
-// Whether the hint can be used: its first triangle is of objects.a, its second of objects.b.
+// True if hint.a < hint.b, hint.a is a triangle of objects.a, and hint.b one of objects.b.
 bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
   return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
          has(scene.objects[objects.b], hint.b);
@@ -402,9 +402,9 @@ std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double with
     counts.add_work(parts[o]);
     std::ranges::move(found[o], std::back_inserter(founds));
   }
-  // Two objects may each have found the other; then the answer with the larger limit is kept. An
-  // answer has all nearest pairs if their distance is within its limit. That holds for at least
-  // one of the two answers, so it holds for the one with the larger limit.
+  // If two objects have found each other, the answer with the larger limit is kept. An answer has
+  // all nearest pairs if their distance is at most its limit. At least one of the two answers has
+  // such a limit, so the answer with the larger limit does.
   std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;

@@ -1,6 +1,6 @@
-// Makes the trees from blocks of core/boxes/triangle_blocks.h, sorted so that sixteen consecutive
-// blocks lie together, too. Divides long searches into a fixed number of parts, which are joined
-// after a while; the rest is divided again.
+// Makes the trees from the blocks of core/boxes/triangle_blocks.h. The blocks are sorted, so that
+// sixteen consecutive blocks lie near each other. A long search is divided into at most kParts
+// parts. The parts pause and are joined; then the search is divided again.
 #include "core/proximity/scene_trees.h"
 
 #include <string>
@@ -74,7 +74,7 @@ namespace {
 
 constexpr std::size_t kMostParts = 64;
 
-// A node of an object's tree; or, with height -1, triangle k of a leaf.
+// Node k of an object's tree at this height. Height -1: triangle k of a leaf.
 struct Part {
   Box box;
   double square;  // of the box's diagonal
@@ -107,9 +107,10 @@ std::vector<Part> children_of(const SceneTrees& trees, std::uint32_t object, con
 
 }  // namespace
 
-// Divides nodes into their children, the largest first, if the squared diagonals of the children
-// sum to less than half that of the node. For a compact surface the sum is about that of its box,
-// so it stays one part. For triangles far from each other the boxes of children are small.
+// Divides nodes into their children, the largest node first. A node is divided if the squared
+// diagonals of its children's boxes sum to less than half the squared diagonal of its own box. A
+// compact surface stays one part, because there the sum is about as large as the squared diagonal.
+// Triangles far from each other become several parts, because the boxes of children are small.
 void SceneTrees::add_parts(std::uint32_t object) {
   const auto is_smaller = [](const Part& x, const Part& y) { return x.square < y.square; };
   std::vector<Part> open = {part_of(trees_[object].box, trees_[object].levels, 0)};
@@ -183,7 +184,7 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
   out.leaf = leaf;
   out.count = trees.count(leaf);
   out.direction = 0;
-  // Triangles and their corners may lie anywhere in memory.
+  // Prefetches, because triangles and their corners may lie anywhere in memory.
   for (std::uint32_t k = 0; k < kWide; ++k) {
     out.triangle[k] = trees.triangle(leaf, std::min(k, out.count - 1));
     __builtin_prefetch(&scene.triangles[out.triangle[k]]);
@@ -197,7 +198,7 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
         out.corner[3 * corner + axis][k] = p[axis] * trees.scale();
     }
   }
-  // Loops over columns, which the compiler computes on lanes.
+  // The compiler computes these loops over columns on lanes.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto &p = out.corner[axis], &q = out.corner[3 + axis], &r = out.corner[6 + axis];
     auto &lo = out.boxes.column[axis], &hi = out.boxes.column[3 + axis];
@@ -271,7 +272,7 @@ namespace {
 
 constexpr std::size_t kParts = 32;
 
-// Deals the open pairs out to new searches, which begin with the bound of this one.
+// Moves the open pairs of a search to new searches, which begin with the search's bound.
 std::vector<Search> divide(Search& search) {
   std::vector<Search> out(std::min(kParts, search.open.size()));
   for (Search& part : out) {
@@ -286,14 +287,14 @@ std::vector<Search> divide(Search& search) {
     const auto settled = std::ranges::find(search.kept, search.settled, &KeptPair::pair);
     if (settled != search.kept.end()) part.kept.push_back(*settled);
   }
-  // The last open pair is examined first, also in each part: the order is kept.
+  // A search examines its last open pair first. Each part keeps the order of its pairs.
   const std::size_t n = search.open.size();
   for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
   search.open.clear();
   return out;
 }
 
-// Adds the pairs that a part found or left open to the search that it came from.
+// Adds a part's kept pairs, open pairs and counts to the search that was divided.
 void join(Search& part, Search& search) {
   if (part.upper < search.upper) {
     search.upper = part.upper;
@@ -311,7 +312,7 @@ void join(Search& part, Search& search) {
 }  // namespace
 
 double scaled_limit(const SceneTrees& trees, double within) {
-  // A subnormal product is rounded, but the next larger number is at least the exact product.
+  // A subnormal product is rounded. The next larger number is at least the exact product.
   return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
 }
 
@@ -350,7 +351,7 @@ NearPairs answer(const SceneTrees& trees, Search& search) {
     upper = std::min(upper, k.upper);
   }
   std::ranges::sort(out.pairs);
-  // A subnormal quotient is rounded, but the next larger number is at least the exact quotient.
+  // A subnormal quotient is rounded. The next larger number is at least the exact quotient.
   out.upper = std::nextafter(upper / trees.scale(), std::numeric_limits<double>::infinity());
   return out;
 }

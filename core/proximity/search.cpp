@@ -1,4 +1,4 @@
-// Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all give
+// Branch and bound on the lanes of this processor. All instruction sets round alike, so they give
 // the same results in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
@@ -35,7 +35,7 @@ class Searcher {
     Box both = a_.tree().box;
     both.add(b_.tree().box);
     origin_ = 0.5 * both.lo + 0.5 * both.hi;
-    // A difference is off by u of itself; near::kGap has room for that.
+    // A computed difference errs by u of itself; near::kGap has room for that.
     extent_ = (both.hi - origin_).cwiseMax(origin_ - both.lo);
     new_bound();
     new_direction();
@@ -44,7 +44,7 @@ class Searcher {
   void begin(const TrianglePair* hint) {
     search_.open.push_back({0, 0, 0, static_cast<std::uint8_t>(a_.tree().levels),
                             static_cast<std::uint8_t>(b_.tree().levels)});
-    probing_ = true;  // the search examines these pairs again later, so they are not kept now
+    probing_ = true;  // pairs are not kept now, since go_on() examines them again
     if (hint != nullptr && counts(hint->a, hint->b)) {
       add_hint(*hint);
       flush();
@@ -92,7 +92,6 @@ class Searcher {
     std::uint32_t least(std::size_t height, std::uint32_t k) const {
       return trees.least(object, height, k);
     }
-    // The leaf from the cache; a missing one is loaded first.
     BlockCorners& load(std::vector<BlockCorners>& memory, std::uint32_t k) const {
       const std::uint32_t leaf = trees.leaf(object, k);
       BlockCorners& out = memory[leaf % SearchMemory::kLeaves];
@@ -101,8 +100,8 @@ class Searcher {
     }
   };
 
-  // Among equally near nodes, those with lower triangles come first: if the objects meet, the
-  // answer is the first pair that meets.
+  // Among equally near pairs of nodes, the pair with lower triangle numbers comes first. If the
+  // objects meet, the answer is the first pair of triangles that meets.
   bool comes_first(const NodePair& x, const NodePair& y) const {
     TrianglePair p = least(x), q = least(y);
     if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // the other object decides
@@ -112,19 +111,19 @@ class Searcher {
   TrianglePair least(const NodePair& at) const {
     return {a_.least(at.a_height, at.a), b_.least(at.b_height, at.b)};
   }
-  // True if every pair of the nodes comes after a pair that certainly meets.
+  // True if every pair of triangles below the nodes comes after a pair that certainly meets.
   bool is_behind(const NodePair& at) const {
     if (others_) return b_.least(at.b_height, at.b) >= others_->end;
     if (search_.first.a == UINT32_MAX) return false;
     return search_.is_behind(lower_bound(at));
   }
-  // No pair of the nodes comes before this one.
+  // Returns a pair that no pair of triangles below the nodes comes before.
   TrianglePair lower_bound(const NodePair& at) const {
     const TrianglePair lowest = least(at);
     // If the objects are one, either node may hold the lower triangle.
     return self_ ? TrianglePair{std::min(lowest.a, lowest.b), 0} : lowest;
   }
-  // True if no pair of the nodes is the answer, because none is nearer than the settled pair.
+  // True if the planes prove that no pair of triangles below the nodes is the answer.
   bool is_no_nearer(const NodePair& at) const {
     if (!search_.planes) return false;
     const auto &a = search_.planes->a.nodes, &b = search_.planes->b.nodes;
@@ -134,7 +133,8 @@ class Searcher {
     return is(a[at.a_height][at.a], -b[at.b_height][at.b]) ||
            (self_ && is(a[at.b_height][at.b], -b[at.a_height][at.a]));
   }
-  // The same for triangle i of leaf a and triangle j of leaf b.
+  // True if the planes prove that triangle i of leaf at.a and triangle j of leaf at.b are not the
+  // answer.
   bool is_no_nearer(const NodePair& at, std::size_t i, std::size_t j,
                     const TrianglePair& pair) const {
     if (!search_.planes) return false;
@@ -146,7 +146,8 @@ class Searcher {
     return is(a[s], -b[t]) || (self_ && is(a[t], -b[s]));
   }
 
-  // Descends to the pair of leaves that seems nearest; their nearest corners give a first bound.
+  // Descends to the pair of leaves that seems nearest. Bounds the two triangles with the nearest
+  // corners there, which gives a first bound.
   void descend() {
     NodePair at = search_.open.back();
     while (at.a_height > 0 || at.b_height > 0) {
@@ -176,14 +177,14 @@ class Searcher {
     flush();
   }
 
-  // Adds pairs of children that are not too far apart to `out`. Divides the higher node, or both if
-  // they are equally high.
+  // Adds pairs of children whose squared gap is at most `limit` to `out`. Divides the higher node,
+  // or both nodes if they are equally high.
   HWY_INLINE void expand(const NodePair& at, double limit, std::vector<NodePair>& out) {
     alignas(64) Gaps squares;
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
     if (at.a_height != at.b_height) {
-      const bool a = at.a_height > at.b_height;  // divides a, else b
+      const bool a = at.a_height > at.b_height;  // true: divides at.a
       const WideBoxes<double>& own =
           a ? a_.children(at.a_height, at.a) : b_.children(at.b_height, at.b);
       const OneBox box = a ? b_.box_of(at.b_height, at.b) : a_.box_of(at.a_height, at.a);
@@ -214,13 +215,13 @@ class Searcher {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
 
-  // Puts the pairs of triangles of two leaves that may be near into the batch.
+  // Adds the pairs of triangles of two leaves that may be near to the batch.
   HWY_INLINE void compare_leaves(const NodePair& at) {
     BlockCorners& a = a_.load(memory_.a, at.a);
     BlockCorners& b = b_.load(memory_.b, at.b);
     const std::uint32_t asked = others_ ? asked_of(b) : 0xffff;
     if (asked == 0) return;
-    // Copies: add() below may change the direction.
+    // These are copies, since add() below may change the direction.
     const bool directed = direction_ != 0;
     const double gap_limit = gap_limit_;
     if (directed) {
@@ -234,7 +235,7 @@ class Searcher {
         asked & near_boxes(b.boxes, a_.box_of(0, at.a), square_limit_, squares);
     search_.counts.box_pairs += kWide * (2 + static_cast<std::size_t>(std::popcount(rows)));
     const bool same = self_ && at.a == at.b;
-    std::array<std::uint32_t, kWide> near{};  // per row, bits of the columns
+    std::array<std::uint32_t, kWide> near{};  // near[i]: bit j is set if pair (i, j) may be near
     for (; rows != 0; rows &= rows - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rows));
       near[i] = columns & near_boxes(b.boxes, OneBox(a.boxes, i), square_limit_, squares);
@@ -251,7 +252,7 @@ class Searcher {
     }
   }
 
-  // In a search with Others: bits of the triangles of a leaf that it asks about.
+  // For a search with Others: returns the bits of the triangles of a leaf that it compares.
   std::uint32_t asked_of(const BlockCorners& leaf) const {
     std::uint32_t out = 0;
     for (std::uint32_t k = 0; k < leaf.count; ++k) {
@@ -261,13 +262,13 @@ class Searcher {
     return out;
   }
 
-  // Drops pairs that are farther apart than the bound along the normal of one of their triangles,
-  // or, in the plane of the triangle, across one of its edges. Boxes along the axes separate
-  // slivers and large triangles poorly. A direction is tried for all pairs of its triangle at once,
-  // which takes less time than bounding two pairs.
+  // Drops pairs that are farther apart than the bound along a direction of one of their triangles:
+  // its normal, or a normal of an edge in its plane. Boxes along the axes separate slivers and
+  // large triangles poorly. A direction is tried for all pairs of a triangle at once, which takes
+  // less time than bounding two pairs.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
-    std::uint32_t once = 0, twice = 0;  // columns with one pair at least, and with two
+    std::uint32_t once = 0, twice = 0;  // columns with at least one and with at least two pairs
     for (std::size_t i = 0; i < kWide; ++i) {
       if (std::popcount(near[i]) > 1) near[i] = near_triangle(a, i, b, near[i]);
       twice |= once & near[i];
@@ -282,8 +283,8 @@ class Searcher {
     }
   }
 
-  // Returns those of the triangles `bits` of a leaf that no direction shows to be farther from
-  // triangle i of `own` than the bound. Any direction gives a valid bound, so errors of a computed
+  // Clears the bits of triangles of `leaf` that are farther from triangle i of `own` than the bound
+  // along a direction of that triangle. Any direction gives a valid bound, so errors of a computed
   // normal do no harm (core/proximity/scene_trees.h). Components are scaled to at most 16.
   HWY_INLINE std::uint32_t near_triangle(const BlockCorners& own, std::size_t i,
                                          const BlockCorners& leaf, std::uint32_t bits) const {
@@ -300,7 +301,7 @@ class Searcher {
     return bits;
   }
 
-  // The least and the largest coordinate along d of each triangle of a leaf, from lane `from` on.
+  // The least and the largest coordinate along a direction, of a triangle on each lane.
   struct Ends {
     Number least, most;
   };
@@ -314,7 +315,8 @@ class Searcher {
     return {hn::Min(hn::Min(p, q), r), hn::Max(hn::Max(p, q), r)};
   }
 
-  // Bits of the triangles of a leaf that along d are no farther from a triangle than the bound.
+  // Returns the bits of the triangles of a leaf whose gap to the triangle `corners` along d is at
+  // most the bound.
   HWY_INLINE std::uint32_t near_along(const Vec3& d, const std::array<Vec3, 3>& corners,
                                       const BlockCorners& leaf) const {
     const double squared = d.squaredNorm();
@@ -334,7 +336,7 @@ class Searcher {
     return out;
   }
 
-  // Bits of the triangles that begin at most gap_limit behind `place` along the direction.
+  // Returns the bits of the triangles with extreme <= place + gap_limit.
   HWY_INLINE std::uint32_t before(const std::array<double, kWide>& extreme, double place,
                                   double gap_limit) const {
     const Numbers n;
@@ -346,7 +348,8 @@ class Searcher {
     return out;
   }
 
-  // Sets the leaf's extremes along the direction: the largest coordinates (`most`) or the smallest.
+  // Sets the leaf's extremes to the triangles' largest (`most`) or smallest coordinates along the
+  // direction.
   HWY_INLINE void project(BlockCorners& leaf, bool most) const {
     for (std::size_t from = 0; from < kWide; from += kLanes) {
       const Ends ends = ends_along(search_.direction, leaf, from);
@@ -363,7 +366,7 @@ class Searcher {
   }
   void add(const BlockCorners& a, std::size_t i, const BlockCorners& b, std::size_t j) {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
-    // The last digits of the bounds depend on the order of the two triangles.
+    // The order is fixed, since the last digits of the bounds depend on it.
     if (first > second) return add(b, j, a, i);
     if (search_.is_behind({first, second}) || !counts(first, second)) return;
     PairBatch& batch = memory_.batch;
@@ -387,14 +390,13 @@ class Searcher {
     batch.count = 1;
   }
 
-  // Bounds the pairs of the batch.
   HWY_INLINE void flush() {
     PairBatch& batch = memory_.batch;
     if (batch.count == 0) return;
     BatchBounds bounds;
     bound_batch(batch, bounds);
-    // Triangles of two objects that have a corner in common meet. The bounds may not show that,
-    // since no edge need pierce a face, as in equal objects and in fans.
+    // Two triangles with a common corner meet. The bounds may not show that if no edge pierces a
+    // face, as in equal objects and in fans.
     for (std::size_t k = 0; k < batch.count && !self_; ++k) {
       const auto& [a, b] = batch.pairs[k];
       if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
@@ -417,12 +419,12 @@ class Searcher {
     }
     if (best < kWide) {
       new_bound();
-      // Among many pairs at almost the same distance the bound falls only by rounding errors. Such
-      // a fall does not change the direction.
+      // Among many pairs at almost the same distance, rounding errors lower the bound a little.
+      // Such a change keeps the direction.
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};
-        // The direction leads away from the object whose nearest others are searched for.
+        // The direction must lead away from the object whose nearest others are searched for.
         if (others_ && !others_->is_own(batch.pairs[best].a)) search_.direction *= -1;
         new_direction();
       }
@@ -470,7 +472,7 @@ class Searcher {
   bool self_;
   Vec3 origin_, extent_;
   double square_limit_ = 0, gap_limit_ = 0;
-  std::uint64_t direction_ = 0;  // of search_.direction; 0: none
+  std::uint64_t direction_ = 0;  // the number of search_.direction; 0: none
   bool probing_ = false;
   std::vector<NodePair> children_;
 };
@@ -500,7 +502,7 @@ Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double l
   out.objects = objects;
   out.limit = limit;
   if (trees.tree(objects.a).levels == 0 || trees.tree(objects.b).levels == 0) return out;
-  // Planes take time for each triangle, so they are not made for a few pairs.
+  // Making planes takes time for each triangle, so a search with few kept pairs makes no planes.
   const auto count = [&](std::uint32_t object) {
     return trees.scene().objects[object].triangle_count;
   };

@@ -1,7 +1,7 @@
-// A pair of triangles on each lane. Two closest points are guessed (Ericson, Real-Time Collision
-// Detection, 2005, sections 5.1.5 and 5.1.9; also edges that pierce a face). However wrong the
-// guess is, it proves two bounds: the distance of the points is an upper bound, and the direction
-// between them gives a lower bound (core/proximity/scene_trees.h).
+// Bounds the distances of pairs of triangles, one pair on each lane. The two closest points are
+// guessed (Ericson, Real-Time Collision Detection, 2005, sections 5.1.5 and 5.1.9). Even a wrong
+// guess proves two bounds: the distance of the points is an upper bound, and the direction between
+// the points gives a lower bound (core/proximity/scene_trees.h).
 #if defined(FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
 #undef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
@@ -25,7 +25,6 @@ static_assert(kWide % kLanes == 0);
 
 HWY_INLINE Number number(double x) { return hn::Set(Numbers(), x); }
 HWY_INLINE Number clamped(Number x) { return hn::Max(number(0), hn::Min(x, number(1))); }
-/// numerator / denominator if the denominator is positive, else 0.
 HWY_INLINE Number ratio(Number numerator, Number denominator) {
   return hn::IfThenElseZero(hn::Gt(denominator, number(0)), hn::Div(numerator, denominator));
 }
@@ -51,13 +50,13 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-/// A point of a triangle, by the weights of corners 1 and 2; corner 0 has the remaining weight.
+/// A point of a triangle: the weights of corners 1 and 2. Corner 0 has the remaining weight.
 struct Weights {
   Number one, two;
 };
-/// The weights of the corner k.
 HWY_INLINE Weights at_corner(int k) { return {number(k == 1), number(k == 2)}; }
-/// The weights of the point at t, in [0, 1], from corner k to the next.
+/// Returns the weights of the point at fraction t, in [0, 1], of the edge from corner k to the
+/// next.
 HWY_INLINE Weights on_edge(int k, Number t) {
   const Number rest = hn::Sub(number(1), t);
   if (k == 0) return {t, number(0)};
@@ -70,8 +69,8 @@ HWY_INLINE Weights chosen(Mask mask, const Weights& yes, const Weights& no) {
 struct LaneTriangle {
   Point corner[3];
   Point edge[3];      // from each corner to the next
-  Number squared[3];  // of the edges' lengths
-  // For coordinates in the plane, dot products of e (edge 0) and f (from corner 0 to corner 2).
+  Number squared[3];  // the edges' squared lengths
+  // Dot products of e, which is edge 0, and f, which leads from corner 0 to corner 2.
   Number ee, ef, ff, determinant;
 
   HWY_INLINE LaneTriangle(const CornerColumns& columns, std::size_t from, const Point& origin)
@@ -132,8 +131,8 @@ class Guess {
     own_best = chosen(better, own, own_best);
     other_best = chosen(better, other, other_best);
   }
-  // Offers nearest points of two edges: starts with those of their lines, then takes on each edge
-  // the point nearest to the one chosen on the other edge.
+  // Offers the nearest points of two edges. Starts with the nearest points of their lines. Then
+  // takes, on each edge, the point nearest to the chosen point of the other edge.
   HWY_INLINE void offer_edges(int i, int j) {
     const Point &u = a_.edge[i], &v = b_.edge[j];
     const Point w = a_.corner[i] - b_.corner[j];
@@ -146,7 +145,7 @@ class Guess {
     const Point difference = w + times(u, s) - times(v, t);
     offer(difference, hn::Eq(s, s), on_edge(i, s), on_edge(j, t), on_a_, on_b_);
   }
-  // Offers a corner and the point of the face below it, if the corner lies over the face.
+  // Offers a corner and its projection on the face's plane, if the projection is in the face.
   HWY_INLINE void offer_face(const Point& p, const Weights& corner, const LaneTriangle& face,
                              Weights& own_best, Weights& other_best) {
     const Point w = p - face.corner[0];
@@ -155,7 +154,7 @@ class Guess {
     const Point difference = w - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, corner, foot, own_best, other_best);
   }
-  // Offers the point at which an edge crosses the plane of the face, if it lies within the face.
+  // Offers the point where an edge crosses the face's plane, if that point is in the face.
   HWY_INLINE void offer_piercing(const LaneTriangle& own, int k, const LaneTriangle& face,
                                  Weights& own_best, Weights& other_best) {
     const Point normal = cross(face.edge[2], face.edge[0]);
@@ -170,7 +169,8 @@ class Guess {
     const Point difference = p - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, on_edge(k, t), foot, own_best, other_best);
   }
-  // The point of the face's plane below the point w, which is relative to the face's corner 0.
+  // Returns the projection of w, a point relative to the face's corner 0, on the face's plane. Sets
+  // `inside` where the projection is in the face.
   HWY_INLINE static Weights over(const Point& w, const LaneTriangle& face, Mask& inside) {
     const Number zero = number(0), det = face.determinant;
     const Number ew = dot(face.edge[0], w), fw = hn::Neg(dot(face.edge[2], w));
@@ -187,7 +187,7 @@ class Guess {
   Weights on_a_, on_b_;
 };
 
-/// Bounds that the difference of the points proves, as core/proximity/scene_trees.h derives them.
+/// The bounds of the distance, derived in core/proximity/scene_trees.h.
 class Proof {
  public:
   HWY_INLINE Proof(const LaneTriangle& a, const LaneTriangle& b) : a_(a), b_(b) {
@@ -224,7 +224,7 @@ class Proof {
   Point most_;
 };
 
-/// The sign of a determinant if it is certain.
+/// The sign of a determinant. Both masks are false on a lane whose sign is uncertain.
 struct Sign {
   Mask positive, negative;
 };
@@ -246,7 +246,7 @@ HWY_INLINE Sign sign_of_determinant(const Point& a, const Point& b, const Point&
   return {hn::Gt(value, doubt), hn::Lt(value, hn::Neg(doubt))};
 }
 
-/// Lanes in which an edge of one triangle certainly passes through the other one.
+/// True on lanes where an edge of one triangle certainly passes through the other triangle.
 HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   Point a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -258,7 +258,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // The sense in which edge k of a passes edge j of b; also that in which j passes k.
+      // The sense in which edge k of a passes edge j of b. It is the same with the edges exchanged.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }
@@ -281,7 +281,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   return out;
 }
 
-/// Bounds of the pairs of a batch. The lanes behind the last pair get arbitrary numbers.
+/// Bounds the pairs of a batch. The lanes behind the last pair get arbitrary numbers.
 HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
   const Numbers n;
   for (std::size_t from = 0; from < batch.count; from += kLanes) {
@@ -292,8 +292,8 @@ HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
     Point d = guess.difference();
     Number lower, upper;
     proof.bound(d, lower, upper);
-    // No edge pierces a face if the triangles are apart. Lanes of such triangles stay as they are,
-    // so that the bounds of a pair do not depend on the others of its batch.
+    // No edge pierces a face if the triangles are apart. The bounds of such triangles stay as they
+    // are, so that they do not depend on other pairs of the batch.
     const Mask apart = hn::Gt(lower, number(0));
     if (!hn::AllTrue(n, apart)) {
       guess.offer_piercings();

@@ -1,4 +1,5 @@
-// Puts pairs into buckets by their first triangle, and sorts or marks the partners in each bucket.
+// Puts pairs into buckets by their first triangle. In each bucket, sorts the second triangles, or
+// marks them as bits.
 #include "core/scene/pair_sort.h"
 
 #include <bit>
@@ -12,12 +13,12 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// If a triangle has at least this many partners, they may be marked as bits instead of sorted.
+// The second triangles of at least this many pairs may be marked as bits instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
-// Sorts pairs of the same first triangle, moves the distinct ones to the front, and returns their
-// number. If there are many and their range of indices is small, marks them in `bits` instead of
-// sorting. All words of `bits` are 0 before and after.
+// Sorts pairs that have the same first triangle, moves the distinct pairs to the front, and returns
+// their number. Many pairs with a small range of indices are marked in `bits` instead. All words of
+// `bits` must be 0 before a call, and are 0 after it.
 std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64_t>& bits) {
   if (pairs.size() >= kMarkFrom) {
     const auto [least, most] = std::ranges::minmax_element(pairs);
@@ -42,7 +43,7 @@ std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64
   return static_cast<std::size_t>(after - pairs.begin());
 }
 
-// The pairs with from <= a < to. After count(), first[k] of them have a < from + k.
+// The pairs with from <= a < to. After count(), first[k] pairs have a < from + k.
 struct Range {
   std::uint64_t from = 0, to = 0;
   std::vector<std::uint32_t> first = {};
@@ -58,10 +59,11 @@ struct Range {
   }
   std::size_t size() const { return first.back(); }
 
-  // Groups the pairs by their first triangle in `out`, which has room for size() pairs, and sorts
-  // each group. Returns the number of distinct pairs; they are at the front of `out`.
+  // Sorts the pairs into `out`, which has room for size() pairs. Returns the number of distinct
+  // pairs, which are at the front of `out`.
   std::size_t sort(Parts parts, std::span<TrianglePair> out) {
-    // Fills each group from its end: first[k + 1], the end of group k, becomes its start.
+    // Fills group k, the pairs with a == from + k, from its end. So first[k + 1] becomes the start
+    // of group k.
     for (const auto& part : parts) {
       for (const TrianglePair& pair : part) {
         if (pair.a >= from && pair.a < to) out[--first[pair.a - from + 1]] = pair;
@@ -80,7 +82,7 @@ struct Range {
   }
 };
 
-// As sorted_unique(). Empties `given`, if it is not null, when the parts are no longer read.
+// Does the same as sorted_unique(). Empties `given`, if it is not null, once all parts are read.
 std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
                                     std::vector<std::vector<TrianglePair>>* given) {
   std::uint64_t least = UINT64_MAX, most = 0;
@@ -95,7 +97,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
   if (total == 0) return {};
   const std::uint64_t span = most - least + 1;
   std::vector<TrianglePair> out;
-  // Counting needs 32-bit positions. Sorting is faster if pairs are few for the range of a.
+  // Counting needs positions of 32 bits. With few pairs in a large range of a, sorting is faster.
   if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());

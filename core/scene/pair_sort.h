@@ -12,21 +12,21 @@
 
 namespace farcull {
 
-/// All pairs of the parts, sorted by (a, b), without repeats. If there are many pairs, the time is
-/// linear in their number plus the range of a. The answer does not depend on `threads` (0: as many
-/// as there are cores).
+/// Returns the pairs of all parts, sorted by (a, b), without repeats. With many pairs, the time is
+/// linear in their number plus the range of a. The answer does not depend on `threads` (0: one per
+/// core).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
-/// As above; empties the parts as soon as it has read them, to make room.
+/// Does the same, and empties the parts once it has read them, to free memory.
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
 
-/// Collects pairs that arrive in groups, unsorted and perhaps repeated. Keeps them in parts of one
-/// size, because a single list would be copied each time it grows.
+/// Collects pairs that arrive in groups, unsorted and perhaps repeated. The pairs are kept in parts
+/// of fixed size, because a single list would be copied each time it grows.
 class GatheredPairs {
  public:
   void add(std::span<const TrianglePair> some);
-  /// As sorted_unique(). This object is empty afterwards.
+  /// Returns the distinct pairs, sorted. This object is empty afterwards.
   std::vector<TrianglePair> sorted(unsigned threads) && {
     return sorted_unique(std::move(parts_), threads);
   }
@@ -37,13 +37,12 @@ class GatheredPairs {
 };
 
 /// Collects pairs from several threads; a pair may come several times. Each thread adds to its own
-/// list. A list that reaches its share of `buffer` (or of the number of distinct pairs, if that is
-/// larger) is sorted and merged into a common list of distinct pairs. So the threads' lists hold at
-/// most `buffer` pairs, or as many as are distinct, and the work stays linear in the pairs that are
-/// added.
+/// list. All threads' lists together hold at most max(`buffer`, number of distinct pairs) pairs. A
+/// list that reaches its share of this limit is sorted and merged into a common list of distinct
+/// pairs. So the work stays linear in the number of added pairs.
 class PairPool {
  public:
-  /// lists: number of threads that add at once. buffer: most pairs in all their lists together.
+  /// lists: number of threads that add at once. buffer: a number of pairs, as described above.
   PairPool(std::size_t lists, std::size_t buffer);
 
   void add(std::size_t list, const TrianglePair& pair) {
@@ -51,9 +50,10 @@ class PairPool {
     pairs.push_back(pair);
     if (pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
   }
-  /// Number of pairs in memory, distinct ones included. Call it only while no thread adds.
+  /// Returns the number of pairs in all lists, the common list included. Precondition: no thread
+  /// adds pairs during the call.
   std::size_t held() const;
-  /// All pairs, sorted, each once. The pool cannot be used afterwards.
+  /// Returns the distinct pairs, sorted. The pool cannot be used afterwards.
   std::vector<TrianglePair> take(unsigned threads);
 
  private:

@@ -181,7 +181,7 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
   } else {
     last_.reset();
   }
-  // With more triangles, the number of corners does not fit into 32 bits.
+  // The number of corners must fit into 32 bits.
   if (!change->same || scene.triangles.size() > UINT32_MAX / 3) {
     first_of_.clear();
     return;
@@ -191,8 +191,8 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
 }
 
 FrameChange MovedCorners::compare(const Scene& scene) {
-  constexpr std::size_t kAtOnce = 64;  // vertices; mostly, none in such a group moved
-  // If an allocation below throws, the copy is partial and is lost.
+  constexpr std::size_t kAtOnce = 64;  // vertices per group; in most groups, no vertex moved
+  // The copy is taken out of last_, so that an allocation that throws leaves no partial copy there.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;
   const auto but_its_name = [](const Object& o) {
@@ -205,7 +205,7 @@ FrameChange MovedCorners::compare(const Scene& scene) {
     last_ = {scene.objects, scene.triangles, scene.vertices};
     return out;
   }
-  // Compares bits: -0.0 and 0.0 count as different, which costs a comparison at most.
+  // Compares bits. So -0.0 differs from 0.0, which at most causes unneeded work.
   const auto equal = [&](std::size_t from, std::size_t count) {
     return std::memcmp(copy->vertices[from].data(), scene.vertices[from].data(),
                        count * sizeof(Vec3)) == 0;

@@ -1,5 +1,5 @@
-// Objects are swept by BoxSweep. The triangles that may have candidates are put in columns across
-// the sweep's axis, in the order of the last call, and each column is sorted and swept.
+// BoxSweep sweeps the objects. Triangles that may be in a candidate pair are then put into columns
+// across the axis of their sweep, in the order of the last call. Each column is sorted and swept.
 #include "core/sweep/sweep_prune.h"
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 namespace farcull {
 namespace {
 
-// Limit on the moves of an insertion sort, per element of its list. Beyond it, a full sort is
-// cheaper.
+// An insertion sort makes at most this many moves per element of its list. With more moves, a full
+// sort is cheaper.
 constexpr std::uint64_t kMoves = 8;
 
-// Sorts a list that is almost sorted. Calls exchanged(e, f) once for each two elements in the wrong
-// order, when e moves from behind f to before it. Returns false, with the list not sorted, if it
-// takes more than kMoves moves per element.
+// Sorts a list that is almost sorted. Calls exchanged(e, f) when an element e moves from behind an
+// element f to before f. Returns false, and leaves the list unsorted, if this takes more than
+// kMoves moves per element.
 template <class Element, class Exchanged>
 bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Exchanged& exchanged) {
   const std::uint64_t most = kMoves * list.size();
@@ -41,7 +41,7 @@ bool insertion_sort(std::span<Element> list, std::uint64_t& moves, const Exchang
   return moved <= most;
 }
 
-// overlap() for boxes that are not empty.
+// True if the boxes overlap. Precondition: neither box is empty.
 bool meet(const Box& a, const Box& b) {
   return a.lo.x() <= b.hi.x() && b.lo.x() <= a.hi.x() && a.lo.y() <= b.hi.y() &&
          b.lo.y() <= a.hi.y() && a.lo.z() <= b.hi.z() && b.lo.z() <= a.hi.z();
@@ -49,12 +49,12 @@ bool meet(const Box& a, const Box& b) {
 
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
-/// Marks a group of one: each triangle of a `self` object is a group of its own.
+/// This bit marks a group of one triangle. Each triangle of a `self` object is such a group.
 constexpr std::uint32_t kAlone = 1u << 31;
 
 constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
 
-/// A lower end to sort by, and the index of the item or triangle that it is of.
+/// The lower end of a box along the axis of the sweep, and the index of the item or triangle.
 struct Key {
   double lo;
   std::uint32_t index;
@@ -64,18 +64,18 @@ struct Key {
 }  // namespace
 
 // Why the pairs are right after an update. Along one axis, two boxes that are not empty overlap iff
-// each lower end stands before the other's upper end; at equal coordinates lower ends stand first.
-// Insertion sort exchanges two ends iff their order changed. If two boxes come to overlap, they
-// were apart along some axis, and there a lower end of one passes an upper end of the other. If
-// they come apart, an upper end passes a lower one. Each such exchange compares the boxes, as they
-// were and as they are.
+// each lower end stands before the other box's upper end. At equal coordinates lower ends stand
+// first. Insertion sort exchanges two ends iff their order changed. If two boxes begin to overlap,
+// they were apart along some axis, so a lower end of one box passes an upper end of the other. If
+// they cease to overlap, an upper end passes a lower end. At each such exchange the boxes of the
+// two frames are compared.
 const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   swaps_ = 0;
   std::vector<std::uint32_t> present;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!boxes[i].is_empty()) present.push_back(i);
   }
-  // If the last update threw, it may have sorted the ends and not the pairs.
+  // If the last update() threw, the ends may not fit the pairs.
   const bool is_whole = std::exchange(is_whole_, false);
   from_scratch_ = !is_whole || present != present_ || boxes.size() != boxes_.size();
   present_ = std::move(present);
@@ -120,7 +120,7 @@ bool BoxSweep::sort_axis(int axis, std::span<const Box> boxes) {
     end.value = end.box_and_side & 1 ? box.hi[axis] : box.lo[axis];
   }
   return insertion_sort(std::span(ends_[axis]), swaps_, [&](const End& e, const End& f) {
-    if (((e.box_and_side ^ f.box_and_side) & 1) == 0) return;  // both lower or both upper ends
+    if (((e.box_and_side ^ f.box_and_side) & 1) == 0) return;  // two lower or two upper ends
     const std::uint32_t i = e.box_and_side / 2, j = f.box_and_side / 2;
     if (i == j) return;
     const TrianglePair pair{std::min(i, j), std::max(i, j)};
@@ -151,7 +151,7 @@ SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes
   fill_columns(boxes);
   const std::uint64_t swaps = counts.swaps;
   const std::vector<TrianglePair> found = sweep_columns(counts);
-  // Columns inherit the order of all triangles. Many moves in them show that it is out of date.
+  // The columns begin in the order of order_. Many moves in the columns show that it is outdated.
   if (counts.swaps - swaps > items_.size()) {
     sort_order();
     ++counts.sorts;
@@ -172,9 +172,11 @@ void SweepPrune::forget() {
   order_.clear();
 }
 
-/// Finds the triangles that may have candidates. The partners of a triangle are the objects whose
-/// boxes meet the box of its object. A triangle may have candidates if its box meets that of a
-/// partner, if more than kTries partners would have to be compared, or if its object is `self`.
+/// Finds the triangles that may be in a candidate pair. The partners of a triangle are the objects
+/// whose boxes meet the box of its object. A triangle survives in three cases:
+/// - its box meets the box of a partner,
+/// - none of the first kTries partners that were compared meets it,
+/// - its object is `self`.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
@@ -182,8 +184,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   survivors_.clear();
   marks_.assign(boxes.size(), kDropped);
   groups_.resize(boxes.size());
-  // The partners of each object, one object after the other. Partners are sorted by their lower
-  // ends along the axis of the sweep, so that the search of a triangle may end early.
+  // The boxes of the partners of each object, one object after the other. They are sorted below by
+  // their lower ends along the axis of the sweep, so that the loop over partners may end early.
   std::vector<std::size_t> starts(scene.objects.size() + 1, 0);
   for (const TrianglePair& pair : object_pairs) ++starts[pair.a + 1], ++starts[pair.b + 1];
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
@@ -203,7 +205,7 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
     if (begin == end && !self) continue;
     ++objects;
     std::sort(begin, end, [axis](const Box& a, const Box& b) { return a.lo[axis] < b.lo[axis]; });
-    auto last = begin;  // the partner that the triangle before met
+    auto last = begin;  // the partner whose box was met last
     for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
       const std::uint32_t t = object.first_triangle + i;
       const Box& box = boxes[t];
@@ -224,8 +226,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep: that along which boxes are shortest, relative to the extent of
-/// all. It changes only if another axis is clearly better, since changing loses the sorted order.
+/// Chooses the axis of the sweep. Along it, boxes are shortest relative to the extent of all boxes.
+/// It changes only if another axis is clearly better, since a change loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();
@@ -239,13 +241,13 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   std::array<double, 3> ratio;
   for (int axis = 0; axis < 3; ++axis) {
     const double r = lengths[axis] / extent[axis];
-    ratio[axis] = std::isfinite(r) ? r : 1;  // flat in this axis, or beyond double: of no use
+    ratio[axis] = std::isfinite(r) ? r : 1;  // 1 if the extent is 0 or infinite
   }
   const int before = axes_[0];
   const auto best = static_cast<int>(std::min_element(ratio.begin(), ratio.end()) - ratio.begin());
   const int sweep = ratio[best] * kBetter < ratio[before] ? best : before;
   axes_ = {sweep, (sweep + 1) % 3, (sweep + 2) % 3};
-  // A column is about as wide as four boxes are long, so that most boxes are in one or two columns
+  // A column is about four times as wide as a box, so that most boxes are in one or two columns
   // along an axis. There are at most twice as many columns as boxes.
   for (int k = 0; k < 2; ++k) {
     const int axis = axes_[k + 1];
@@ -260,7 +262,7 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   while (bits_[0] + bits_[1] > most) --bits_[bits_[0] < bits_[1] ? 1 : 0];
 }
 
-/// Puts the survivors into order_; those of the last call keep its order.
+/// Makes order_ the list of survivors. Triangles that were in order_ keep their order.
 void SweepPrune::renew_order(std::size_t triangles) {
   std::size_t kept = 0;
   for (const std::uint32_t t : order_) {
@@ -274,12 +276,13 @@ void SweepPrune::renew_order(std::size_t triangles) {
   }
 }
 
-/// Puts the triangles into their columns, in the order that was kept. Long boxes are in many
-/// columns, so columns are doubled in width until there are few entries per triangle.
+/// Puts the triangles into their columns, in the order of order_. Since long boxes are in many
+/// columns, the columns are doubled in width until there are few entries per triangle.
 void SweepPrune::fill_columns(std::span<const Box> boxes) {
   constexpr std::uint64_t kEntries = 4;
   const auto [sweep, u, v] = axes_;
-  // Monotone in x: if two boxes overlap, the column of the larger lower end holds both.
+  // column() is monotone in x. So if two boxes overlap, the column of the larger lower end has both
+  // boxes.
   const auto column = [this](double x, int k) {
     const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
     const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));
@@ -321,14 +324,14 @@ void SweepPrune::fill_columns(std::span<const Box> boxes) {
   for (const Item& item : items_) for_columns(item.range, [this](std::size_t c) { ++starts_[c]; });
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   entries_.resize(total);
-  for (std::size_t i = items_.size(); i-- > 0;) {  // from the back: ends become starts
+  for (std::size_t i = items_.size(); i-- > 0;) {  // backwards: starts_ turns from ends to starts
     for_columns(items_[i].range, [&](std::size_t c) { entries_[--starts_[c]] = items_[i]; });
   }
 }
 
 std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   std::vector<TrianglePair> pairs;
-  std::vector<Key> keys;  // small, so that moving them is cheap
+  std::vector<Key> keys;  // keys are small, so sorting moves little memory
   for (std::size_t c = 0; c + 1 < starts_.size(); ++c) {
     const std::span column(entries_.data() + starts_[c], entries_.data() + starts_[c + 1]);
     keys.clear();
@@ -346,7 +349,7 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
             f.lo[2] > e.hi[2]) {
           continue;
         }
-        // Each pair is reported once: in the one column that holds the larger lower ends.
+        // Each pair is reported only in the column that contains the larger lower ends.
         if (std::max(e.range.u0, f.range.u0) != u || std::max(e.range.v0, f.range.v0) != v)
           continue;
         pairs.push_back({std::min(e.triangle, f.triangle), std::max(e.triangle, f.triangle)});
@@ -356,7 +359,6 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
   return pairs;
 }
 
-/// Sorts the triangles in order_ by the lower ends of the current boxes, for later calls.
 void SweepPrune::sort_order() {
   std::vector<Key> keys;
   keys.reserve(items_.size());

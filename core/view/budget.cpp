@@ -8,8 +8,8 @@
 namespace farcull {
 namespace {
 
-// GLSL leaves the rounding mode open, so one operation errs by up to one unit in the last place:
-// 2^-23, not 2^-24.
+// GLSL does not define the rounding mode. So one operation errs by up to one unit in the last
+// place, 2^-23, and not only by 2^-24.
 constexpr double kUnit = 0x1p-23;
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
@@ -27,27 +27,26 @@ std::array<BudgetTerm, 6> Budget::terms() const {
 double Budget::radius() const {
   double sum = 0;
   for (const BudgetTerm& term : terms()) sum += term.px;
-  // Six additions of rounded terms err by less than 2^-49 of the sum; the factor also makes the
-  // inequality strict.
+  // Six additions of rounded terms err by less than 2^-49 of the sum. The factor covers these
+  // errors and makes the inequality strict.
   return sum * (1 + 0x1p-40);
 }
 
 Budget budget_for(const RasterLimits& limits, int viewport) {
-  const double half =
-      0.5 * viewport;  // M: the largest |coordinate| about the centre, and half the viewport
+  const double half = 0.5 * viewport;  // M, the largest |coordinate| relative to the centre
   Budget b;
   b.sampling = kSqrt2 / 2;
-  // Rounding a corner to the nearest float errs by kUnit / 2 of `half`, and the doubles before it
-  // by less. On the CPU the edges of a proxy are compared with pixel centres in floats: 3.01 kUnit
-  // of half more (docs/budget.md, "The canvas on the CPU").
+  // Rounding a corner to the nearest float errs by kUnit / 2 of `half`. The doubles before err by
+  // less. On the CPU, edges of a proxy are compared with pixel centres in floats, which adds 3.01
+  // kUnit of `half` (docs/budget.md, "The canvas on the CPU").
   b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
-  // A coordinate errs by e = kMaxDoubleError, the image plane by sqrt(2) e. The depth adds to the
-  // distance from the centre to second order only: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e +
-  // e^2 / (2 s) with s = sqrt(2)/2 (docs/budget.md, "double").
+  // A coordinate errs by e = kMaxDoubleError, a point in the image plane by sqrt(2) e. The depth's
+  // error adds to the distance s = sqrt(2)/2 from the centre only to second order:
+  // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
-  // docs/budget.md, "vertex". Errors in units of kUnit: product with 2/viewport (1), division by w
-  // (2.5) and product with viewport/2 (1), relative to M; sum with the viewport's centre (1),
-  // relative to M + viewport/2. The factor 1 + 4 kUnit covers the products of these errors.
+  // docs/budget.md, "vertex". Errors in units of kUnit, relative to M: product with 2/viewport (1),
+  // division by w (2.5), product with viewport/2 (1). Relative to M + viewport/2: sum with the
+  // viewport's centre (1). The factor 1 + 4 kUnit covers the products of these errors.
   b.vertex =
       limits.exact_samples ? 0 : kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
   b.snap = limits.exact_samples ? 0 : kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);

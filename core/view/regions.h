@@ -1,4 +1,5 @@
-// Finds by boxes the places where a scene's objects can meet, and the triangles that can take part.
+// Finds, by boxes, the places where objects of a scene can meet, and the triangles that can meet
+// another object.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +13,35 @@ namespace farcull {
 struct Regions {
   std::vector<Box> triangle_boxes;       // per triangle of the scene
   std::vector<Box> object_boxes;         // per object
-  std::vector<Box> places;               // where two objects' boxes overlap, one per pair
-  std::vector<std::uint32_t> triangles;  // ascending: all that can take part, since their box meets
-                                         // the box of another object
+  std::vector<Box> places;               // boxes that contain all points where objects can meet
+  std::vector<std::uint32_t> triangles;  // triangles that can meet another object; ascending
 };
 
-/// Further views and finer offsets are left out if at most this many triangles are kept: to test
-/// these exactly takes less time than the upload and the readbacks of one view.
+/// If at most this many triangles remain, further views and finer offsets are left out. Exact tests
+/// of these triangles take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// Below this many objects none is asked as a whole: that level draws everything twice, and among
-/// few overlapping objects one seldom hides all of another.
+/// With fewer objects, no object is tested as a whole. Such a test draws all triangles twice, and
+/// among few overlapping objects, one seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
-/// A further round follows if the last one culled at least one triangle in this many. A round costs
-/// about as much as the exact tests of that many triangles, so it has to cull a good part of them
-/// (docs/methods.md, "What a run leaves out").
+/// A further round follows if the last round culled at least 1/kWorthARound of its triangles. A
+/// round takes about as long as exact tests of all its triangles, so it must cull a good part
+/// of them (docs/methods.md, "What a run leaves out").
 constexpr std::uint32_t kWorthARound = 8;
 
 struct RegionRules {
-  bool self = false;  // objects that are marked so are tested against themselves
-  bool full = false;  // leave nothing out: every triangle takes part
+  bool self = false;  // objects with Object::self are tested against themselves
+  bool full = false;  // every triangle takes part
 };
 
-/// With `self` the box of a marked object of two triangles or more is a region of its own, and all
-/// of its triangles take part. With `full` every triangle takes part. The regions, and so the
-/// views, stay the same, except that the box of the scene is the region if there is no other.
+/// Finds one place for each pair of objects whose boxes overlap: the common part of the boxes. With
+/// rules.self, the box of an object with Object::self and two or more triangles is a place, and all
+/// triangles of the object take part. With rules.full, every triangle takes part, and the box of
+/// the scene is the place if there is no other.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
-/// The regions that drawing needs to decide about these pairs. triangles: those of the pairs.
-/// places: one for each object that owns the first triangle of a pair; it contains the overlaps of
-/// the boxes of these pairs. So every common point of a pair is in one of the places.
+/// Returns the regions for these pairs. triangles: the triangles of the pairs. places: one for each
+/// object that owns the first triangle of a pair. The place contains the common parts of the boxes
+/// of its pairs. So every common point of a pair is in a place.
 Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// Image axes for a depth direction. For a coordinate axis they are the other two, so that the map
-// multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
+// Returns the image axes for a depth direction. If that is a coordinate axis, the image axes are
+// the other two coordinate axes, so that the map multiplies exactly.
 Eigen::Matrix3d rows_for(const Vec3& depth) {
   Eigen::Matrix3d rows;
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,8 @@ Eigen::Matrix3d rows_for(const Vec3& depth) {
   return rows;
 }
 
-// Bounds of the image of a box under map * (x - origin), widened by the error of that evaluation.
+// Returns a box that contains the image of a box under map * (x - origin). It is enlarged by the
+// rounding errors of the computed image. Raises `error` to the largest of these errors.
 Box image(const Eigen::Matrix3d& map, const Vec3& origin, const Box& box, double& error) {
   const Vec3 from = box.lo - origin;
   const Vec3 to = box.hi - origin;
@@ -112,10 +113,10 @@ std::vector<View> parse_views(const std::string& text) {
 }
 
 PixelPoint to_pixel(const Window& window, const Vec3& x) {
-  // The subtraction is one correctly rounded operation, so its error is relative to |x - origin|
-  // and not to |x|: scenes far from the world's origin lose nothing. Three products and two
-  // additions follow; kMapRounding covers the roundings and the cross terms (docs/budget.md,
-  // "double"). Each product that underflows errs by at most 2^-1075 more.
+  // The subtraction is rounded once, so its error is relative to |x - origin|, not to |x|. Scenes
+  // far from the world's origin lose no precision. Three products and two additions follow.
+  // kMapRounding covers the roundings and the cross terms (docs/budget.md, "double"). A product
+  // that underflows adds an error of at most 2^-1075.
   const Vec3 d = x - window.origin;
   // The order of the sums is that of core/native/fatten-inl.h.
   PixelPoint out{{}, 0};
@@ -125,7 +126,7 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
                  c = window.map(row, 2) * d[2];
     out.p[row] = (a + b) + c;
     const double sum = (std::abs(a) + std::abs(b)) + std::abs(c);
-    if (!(sum <= bound)) bound = sum;  // also if it is not a number
+    if (!(sum <= bound)) bound = sum;  // true if `sum` is larger or NaN
   }
   bound = kMapRounding * bound + kMapUnderflow;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
@@ -156,16 +157,16 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
                 .hi = {}};
   double error = 0;
 
-  // Centre the window on the middle of the union's image. For oblique views the image of the box's
-  // centre lies elsewhere.
+  // Centres the window on the middle of the regions' image. In an oblique view, that is not the
+  // image of the centre of `world`.
   const Box rough = image(view.rows, window.origin, regions, error);
   if (!std::isfinite(error)) return std::nullopt;
   const bool axis_aligned = (view.rows.array() == 0).count() == 6;
   if (!axis_aligned) window.origin += view.rows.transpose() * (0.5 * rough.lo + 0.5 * rough.hi);
 
-  // A region that is flat in the image still needs a pixel of positive size. At any resolution, a
-  // pixel is large enough for the coordinates to resolve it. So the centre, a rounded double, lies
-  // within 1/16 px of the middle, and the window does not exceed its size.
+  // If the image is flat, a pixel still needs a positive size. At any resolution, a pixel is at
+  // least 2^-45 of the largest coordinate. So the window's centre, a rounded double, lies within
+  // 1/16 px of the middle of the image, and the window keeps to its limit of size.
   const Box unit = image(view.rows, window.origin, regions, error);
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
   const double extent = std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
@@ -177,7 +178,7 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   error = 0;
   const Box px = image(window.map, window.origin, regions, error);
   if (!(error <= kMaxDoubleError)) return std::nullopt;
-  // These sums are rounded: relative to the bounds this is within their error, else below 2^-40.
+  // 2^-40 makes up for the rounding of these sums, as far as `error` does not cover it.
   window.lo = px.lo.array() - (1 + 0x1p-40);
   window.hi = px.hi.array() + (1 + 0x1p-40);
   const auto side = [&](int i) {
@@ -191,9 +192,9 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
 
 namespace {
 
-// Keeps the part of `in` with sign * p[axis] <= sign * plane. False: `out` has no room for it. A
-// convex polygon gains at most one corner. But rounding can put the corners of a needle along the
-// plane on either side of it, and every change of sides adds a corner.
+// Sets `out` to the part of `in` with sign * p[axis] <= sign * plane. Returns false if `out` has no
+// room for that. A convex polygon gains at most one corner. But if rounding puts the corners of a
+// needle along the plane on either side of it, every change of sides adds a corner.
 bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign) {
   const int room = static_cast<int>(out.corners.size());
   out.count = 0;
@@ -205,7 +206,7 @@ bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign
     if (out.count + a_inside + (a_inside != b_inside) > room) return false;
     if (a_inside) out.corners[out.count++] = a;
     if (a_inside != b_inside) {
-      // Computed from the inner end, so both neighbours of an edge would get the same point.
+      // Starts at the inner end, so that two triangles with a common edge get the same point.
       const Vec3& from = a_inside ? a : b;
       const Vec3& to = a_inside ? b : a;
       const double t = (plane - from[axis]) / (to[axis] - from[axis]);
@@ -240,7 +241,7 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
       if (std::none_of(points.begin(), points.end(), outside)) continue;
       Patch next;
       if (!clip_plane(patch, next, axis, plane, sign)) {
-        patch.error = HUGE_VAL;  // uncertain, so kept
+        patch.error = HUGE_VAL;  // makes the patch undrawable, so its triangle is kept
         return patch;
       }
       std::copy_n(next.corners.begin(), next.count, patch.corners.begin());
@@ -250,9 +251,9 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
     }
     if (patch.count == 0) break;
   }
-  // Each cut displaces its new corners by at most kCutRounding * largest in each axis. t carries
-  // three roundings, times |to - from| <= 2 * largest; then the difference, the product and the sum
-  // round once each (docs/budget.md, "Clipping and the fan").
+  // Each cut displaces its new corners by at most kCutRounding * largest along each axis. t has
+  // three roundings, multiplied by |to - from| <= 2 * largest. The difference, the product and the
+  // sum then round once each (docs/budget.md, "Clipping and the fan").
   patch.error += patch.cuts * kCutRounding * largest;
   return patch;
 }

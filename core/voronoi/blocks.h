@@ -1,6 +1,6 @@
-// Visits the blocks of cells level by level. Each block has the triangles that can matter to its
-// cells, and passes on those that can still matter to its parts. A level reads only results of the
-// levels above it, so the answer does not depend on the number of threads.
+// Processes blocks of cells level by level. Each block has a list of the triangles that can matter
+// to its cells. Its parts, on the next level, get a shorter list. A level reads only results of the
+// levels above, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,8 @@ namespace farcull::voronoi {
 inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// The cells from .. to - 1 along each axis, and the place of its triangles in the level's list.
+// The cells from .. to - 1 along each axis. Its triangles are level.triangles[first] and the next
+// count - 1.
 struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
@@ -51,8 +52,8 @@ inline GridPoint centre_of(const Block& block) {
   return out;
 }
 
-// Cuts the block in halves along each axis with more than one cell, and adds the parts. All parts
-// have the triangles `kept`.
+// Halves the block along each axis with more than one cell. Adds the parts, which all have the
+// triangles `kept`, to `below`.
 inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, Level& below) {
   std::array<std::vector<std::pair<int, int>>, 3> parts;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -72,13 +73,13 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   }
 }
 
-// An object near a point: the least bounds and the least computed distance over its triangles.
+// The distance of an object from a point: the least values of GridDistance over its triangles.
 struct Near {
   std::uint32_t object;
   float computed, lower, upper;
 };
 
-// The distances of a point from triangles that are sorted by object.
+// The distances of a point from triangles. The triangles must be sorted by object.
 class Distances {
  public:
   void compute(const GridPoint& point, std::span<const std::uint32_t> ids,
@@ -101,7 +102,7 @@ class Distances {
   }
   const std::vector<GridDistance>& of() const { return of_; }  // in the order of the triangles
   const std::vector<Near>& objects() const { return objects_; }
-  // The K least upper bounds with their objects, ascending.
+  // Returns the K least upper bounds with their objects, ascending.
   template <std::size_t K>
   std::array<std::pair<float, std::uint32_t>, K> least_upper() const {
     std::array<std::pair<float, std::uint32_t>, K> out;
@@ -120,7 +121,7 @@ class Distances {
   std::vector<Near> objects_;
 };
 
-/// Throws Error naming the option that is out of range.
+/// Throws Error if an option is out of range.
 inline void require(const VoronoiOptions& options) {
   if (options.resolution < 1 || options.resolution > kVoronoiLargest) {
     throw Error("resolution", "is " + std::to_string(options.resolution),
@@ -134,9 +135,9 @@ inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Walks down the blocks of the grid level by level: calls form.look() for each block that matters,
-/// then form.add() with what each chunk of the level found, in order. Form::Found: what a chunk
-/// finds.
+/// Processes the blocks of the grid level by level. Calls form.look() for each block of a level,
+/// which adds blocks to the next level. Then calls form.add() with the Form::Found of each chunk of
+/// the level, in order.
 template <class Form>
 void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
              const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {

@@ -1,4 +1,4 @@
-// The grid of the diagram, and triangles on it.
+// The grid of the diagram, and triangles in its units.
 #include <algorithm>
 
 #include "core/base/parallel.h"
@@ -7,7 +7,7 @@
 namespace farcull {
 namespace {
 
-// All roundings of the grid go outward.
+// The grid rounds outward.
 double up(double x) { return std::nextafter(x, HUGE_VAL); }
 
 }  // namespace
@@ -29,8 +29,8 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
   const double largest =
       std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
   if (!(largest > 0)) return out;
-  // The largest coordinate is then in [1, 2). A coordinate that becomes subnormal is off by less
-  // than 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
+  // Now the largest coordinate is in [1, 2). A coordinate that becomes subnormal errs by less than
+  // 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
   out.exponent = -std::ilogb(largest);
   Vec3 extent;
   for (int k = 0; k < 3; ++k) {
@@ -42,7 +42,7 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
   if (!(most > 0)) return out;
   out.cell = up(most / resolution);
   for (std::size_t k = 0; k < 3; ++k) {
-    // The factor makes up for more than the two roundings of the quotient.
+    // The factor covers the two roundings of the quotient.
     const double sides = extent[static_cast<int>(k)] / out.cell * (1 + 0x1p-50);
     out.cells[k] = std::min(resolution, static_cast<int>(sides) + 1);
   }

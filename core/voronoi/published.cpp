@@ -1,5 +1,5 @@
-// The published form: each cell names its two nearest objects. A block is left out if every two
-// objects that its cells may name have already been named by other cells.
+// The published form: each cell names its two nearest objects. A block is left out if other cells
+// have already named all pairs of objects that its cells may name.
 #include <algorithm>
 #include <cmath>
 
@@ -9,23 +9,23 @@ namespace farcull {
 namespace voronoi {
 namespace {
 
-// True if one object is nearer than another one to every point of a block. Unlike a comparison of
-// distances from the middle of the block, the test stays sharp if both objects are far away.
+// dominates() below tests whether one object is nearer than another to every point of a block. The
+// test stays sharp for distant objects; a comparison of distances from the block's middle does not.
 //
-// Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
-// square of the distance from v is less than that from T everywhere if one of two upper bounds of
-// their difference is below 0.
+// Let v be a corner of one object, T a triangle of the other object, and c a point of the block.
+// Two upper bounds of |c - v|^2 - |c - T|^2 hold for all c. If one bound is below 0, v is nearer
+// than T to every c.
 //
-// Box: if [lo, hi] is the box of T, the difference is at most a sum over the axes of
-// (c - v)^2 - |c - [lo, hi]|^2. Each term is convex in c: its slope is 2 (lo - v) up to lo, then
-// grows to 2 (hi - v), and stays. So its largest value is at an end of the block (Emrich, Kriegel,
+// Box: if [lo, hi] is the box of T, the difference is at most the sum over the axes of
+// (c - v)^2 - |c - [lo, hi]|^2. A term is convex in c: its slope is 2 (lo - v) up to lo, grows to
+// 2 (hi - v) at hi, and stays. So its largest value is at an end of the block (Emrich, Kriegel,
 // Kroger, Renz, Zufle: Boosting Spatial Pruning: On Optimal Pruning of MBRs, SIGMOD 2010).
 //
 // Corners: for a point p of T with weights l_i of its corners p_i,
 //   |c - v|^2 - |c - p|^2 = sum l_i (|c - v|^2 - |c - p_i|^2) + sum_{i<j} l_i l_j |p_i - p_j|^2.
 // The second sum is at most a third of the square of the longest side. Each bracket of the first
-// one is linear in c, so it is largest at a corner of the block.
-using Exactly = std::array<double, 3>;  // a point or a step, in units of the grid
+// sum is linear in c, so it is largest at a corner of the block.
+using Exactly = std::array<double, 3>;  // a point or a vector, in units of the grid
 
 // The points x with |x - centre| <= half along each axis.
 struct BlockBox {
@@ -38,7 +38,7 @@ Exactly from(const Exactly& centre, const GridPoint& p) {
 }
 double squared(const Exactly& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
 
-using Corners = std::array<Exactly, 3>;  // relative to the centre of the block, as v
+using Corners = std::array<Exactly, 3>;  // relative to the centre of the block
 
 double by_box(const Exactly& v, const Corners& t, const Exactly& half) {
   double most = 0;
@@ -68,7 +68,8 @@ double by_corners(const Exactly& v, const Corners& t, const Exactly& half) {
   return most + longest / 3;
 }
 
-// The corner of the triangles `ids` that is nearest to the centre. Precondition: ids is not empty.
+// Returns the corner of the triangles `ids` that is nearest to the block's centre, relative to that
+// centre. Precondition: ids is not empty.
 Exactly nearest_corner(std::span<const std::uint32_t> ids,
                        const std::vector<GridTriangle>& triangles, const BlockBox& block) {
   Exactly out{};
@@ -85,10 +86,10 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
   return out;
 }
 
-// True only if, at every point of the block, the exact and the computed distance from `corner`
-// (nearest_corner() of an object) are less than those from all triangles `ids` of another object.
-// The margin is for differences of squares: the sum of the two distances, each at most 1.74 N,
-// times the sum of their errors. The double arithmetic here errs by far less.
+// True only if every point of the block is nearer to `corner`, nearest_corner() of an object, than
+// to all triangles `ids` of another object. That holds for exact and for computed distances. The
+// margin bounds the error of a difference of squares: it is the sum of the two distances, each at
+// most 1.74 N, times the sum of their errors. The arithmetic in double errs by far less.
 bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
                const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
   const double margin =
@@ -109,7 +110,7 @@ class Published {
 
   Found nothing() const { return {}; }
 
-  // Computes the distances from one cell of the block, which also bound those from its other cells.
+  // Computes the distances from one cell of the block. They bound the distances from other cells.
   void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
             Found& found, Level& below) const {
     GridPoint centre;
@@ -162,13 +163,13 @@ class Published {
   // An object that may be one of the two nearest to a cell.
   struct Candidate {
     const Near* near;
-    std::size_t dominators = 0;  // how many others dominate it
-    std::size_t by = 0;          // one of them
+    std::size_t dominators = 0;  // how many other candidates dominate it
+    std::size_t by = 0;          // index of one dominator
   };
 
-  // The objects that may be among the two nearest to a cell of the block, ascending. Empty if every
-  // two objects that a cell may name together have already been named. slack: bounds how much the
-  // difference of two distances changes from the centre's cell to any other.
+  // Returns the objects that may be among the two nearest to a cell of the block, ascending. Empty
+  // if all pairs of objects that a cell may name have already been named. slack: bounds how much
+  // the difference of two distances changes from the central cell to another cell.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();
@@ -181,7 +182,7 @@ class Published {
     for (std::size_t i = 0; i < candidates.size() && !adds; ++i) {
       for (std::size_t j = i + 1; j < candidates.size() && !adds; ++j) {
         const std::uint32_t a = candidates[i].near->object, b = candidates[j].near->object;
-        // They can be the nearest two only if neither is certainly farther than a third one.
+        // a and b can be the nearest two only if neither is certainly farther than a third object.
         const auto third = std::find_if(least.begin(), least.end(), [&](const auto& upper) {
           return upper.second != a && upper.second != b;
         });
@@ -237,7 +238,7 @@ class Published {
   const std::vector<GridTriangle>& triangles_;
   int longest_;
   float error_ = voronoi_error(longest_);
-  std::vector<ObjectPair> pairs_;  // of the levels above
+  std::vector<ObjectPair> pairs_;  // found on the levels above
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. An end
-// is hardly farther from the cell than the nearest triangle. And it is at most half the searched
-// distance from the middle; each point of space gives an upper bound of that distance.
+// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. The
+// first: an end is hardly farther from the cell than the nearest triangle. The second: an end is at
+// most half the length of the segment from its middle. Each point of space gives an upper bound of
+// that length.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,7 +19,7 @@ constexpr std::size_t kPairsHeld = std::size_t{1} << 22;
 class Reliable {
  public:
   struct Found {
-    std::vector<float> upper;  // of each object, as upper_
+    std::vector<float> upper;  // per object, see upper_
     Level cells;
   };
   Reliable(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid, std::size_t objects,
@@ -52,12 +53,12 @@ class Reliable {
     cells_.append(found.cells);
   }
 
-  // The pairs that remain in the cells, now that all upper bounds are known.
+  // Returns the pairs that remain in the cells. Call it when all upper bounds are known.
   std::vector<TrianglePair> pairs(const VoronoiOptions& options, VoronoiCounts& counts) const {
     const std::size_t lists = chunks_for(cells_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
     for (std::size_t first = 0; first < cells_.blocks.size();) {
-      // Takes cells until they may add some millions of pairs, and at least one cell.
+      // Takes at least one cell, and more cells until they may add some millions of pairs.
       std::size_t next = first;
       std::uint64_t added = 0;
       while (next < cells_.blocks.size() && (next == first || added < kPairsHeld)) {
@@ -86,7 +87,7 @@ class Reliable {
     float lower;
   };
 
-  // Half the diagonal of the block, rounded up.
+  // Returns half the diagonal of the block, rounded up.
   float half_of(const Block& block) const {
     float square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -109,11 +110,11 @@ class Reliable {
   // An end of the object's shortest segment is at most this far from the point.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // The triangles that may hold an end; none if all such triangles are of one object.
+  // Returns the triangles that may hold an end. Empty if all of them belong to one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;
-    // The two largest limits of different objects that may have an end here.
+    // The two largest limits, with their objects, of objects that may have an end here.
     std::array<std::pair<float, std::uint32_t>, 2> largest;
     largest.fill({-kInfinite, kNone});
     for (const Near& near : distances.objects()) {
@@ -166,8 +167,8 @@ class Reliable {
 
   const std::vector<GridTriangle>& triangles_;
   float error_, widening_;
-  // Upper bounds of the distance of each object from the nearest other one, in units of the grid,
-  // from the levels that are done.
+  // For each object, an upper bound of its distance from the nearest other object, in units of the
+  // grid. Finished levels gave these bounds.
   std::vector<float> upper_;
   Level cells_;
 };

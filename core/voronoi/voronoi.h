@@ -3,17 +3,17 @@
 // As published: Sud, Govindaraju, Gayle, Kabul, Manocha (Fast Proximity Computation Among
 // Deformable Models using Discrete Voronoi Diagrams, SIGGRAPH 2006), after Hoff, Keyser, Lin,
 // Manocha, Culver (Fast Computation of Generalized Voronoi Diagrams Using Graphics Hardware,
-// SIGGRAPH 1999). A grid of cubes covers the scene, and each cell knows the two objects that are
+// SIGGRAPH 1999). A grid of cubes covers the scene. Each cell names the two objects that are
 // nearest to its centre, with distances in float. Two objects are potential neighbours if some cell
-// names both. A cell that lies between the nearest points of two objects may have its centre nearer
-// to a third one, so this loses neighbours.
+// names them. If a cell lies between the nearest points of two objects, a third object may be
+// nearer to its centre. So the published form loses neighbours.
 //
-// The reliable form loses none. Consider the shortest segments between two objects whose middle
-// lies in a cell: the cell keeps every triangle that may hold an end of such a segment (theorem
-// V9). docs/voronoi.md has definitions and proofs.
+// The reliable form loses no neighbours. If the middle of a shortest segment between two objects
+// lies in a cell, the cell keeps every triangle that may hold an end of the segment (theorem V9).
+// docs/voronoi.md has definitions and proofs.
 //
-// Both forms walk down a tree of blocks of cells (the papers fill slice after slice). A block is
-// left out if no cell in it can add to the answer.
+// Both forms process a tree of blocks of cells (the papers fill slice after slice). A block is left
+// out if no cell in it can add to the answer.
 #pragma once
 
 #include <algorithm>
@@ -28,13 +28,13 @@
 namespace farcull {
 
 // The grid of the discrete Voronoi diagram, triangles in its units, and the distance of a point
-// from a triangle: in float, with two bounds of the exact one.
+// from a triangle: in float, with two bounds of the exact distance.
 //
 // In units of the grid, a coordinate x of the scene is (x 2^exponent - lo) / cell. The cells are
 // the unit cubes [i, i + 1]. The power of two keeps all finite doubles in range.
 //
-// Errors of the computed distance, with u = 2^-24. N is at least every coordinate of the point c
-// and of the triangle with corners q_i; none is negative. All roundings are to nearest.
+// Errors of the computed distance, with u = 2^-24. The coordinates of the point c and of the
+// triangle with corners q_i are in [0, N]. All roundings are to nearest.
 //
 // Upper bound. The nearest point is sought on each edge and in the face. On an edge it is w = q + t
 // (q' - q) with a float t in [0, 1], whatever the error of t. In the face it is q0 + s (q1 - q0) +
@@ -63,15 +63,15 @@ struct VoronoiGrid {
   std::array<int, 3> cells = {1, 1, 1};
 
   int longest() const;  // the largest of `cells`
-  /// A distance in units of the grid, in world units, rounded up or kept; infinite if it is too
+  /// Converts a distance from units of the grid to world units, rounded up. Infinite if it is too
   /// large for a double.
   double world(double distance) const;
 };
 
-/// The grid with `resolution` cells along the longest side of the box of all triangles.
+/// Returns the grid with `resolution` cells along the longest side of the box of all triangles.
 VoronoiGrid voronoi_grid(const Scene& scene, int resolution);
 
-/// A triangle in units of the grid: each coordinate is at most 1.01 * 2^-24 longest() off.
+/// A triangle in units of the grid. Each coordinate errs by at most 1.01 * 2^-24 longest().
 struct GridTriangle {
   std::array<std::array<float, 3>, 3> corners;
   std::uint32_t object = 0;
@@ -82,10 +82,10 @@ std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& 
 /// A point in units of the grid.
 using GridPoint = std::array<float, 3>;
 
-/// 32 uN, with N cells along the longest side.
+/// Returns 32 uN, where N is the number of cells along the longest side.
 inline float voronoi_error(int longest) { return 0x1p-19f * static_cast<float>(longest); }
 
-/// lower <= the exact distance <= upper. computed: the distance that a diagram in float compares.
+/// lower <= the exact distance <= upper. computed: the distance that the published form compares.
 struct GridDistance {
   float computed;
   float lower;
@@ -105,13 +105,13 @@ inline float dot(const GridPoint& a, const GridPoint& b) {
 inline GridPoint cross(const GridPoint& a, const GridPoint& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-// The quotient, clamped to [0, 1]; 0 if it is not a number.
+// Returns the quotient, clamped to [0, 1]; 0 if it is NaN.
 inline float part(float numerator, float denominator) {
   const float t = numerator / denominator;
   return t > 0 ? std::min(t, 1.0f) : 0.0f;
 }
 
-// The shortest step so far from a point w of the triangle to c, and its square.
+// The shortest vector n so far from a point of the triangle to c. square: its squared length.
 struct Shortest {
   GridPoint n;
   float square;
@@ -130,13 +130,14 @@ inline GridPoint to_edge(const GridPoint& c, const GridPoint& q, const GridPoint
   return minus(c, {q[0] + t * along[0], q[1] + t * along[1], q[2] + t * along[2]});
 }
 
-// Adds the step from the point of the face below c, if that point is inside the triangle.
+// Projects c on the face's plane. If the projection is in the triangle, adds the vector from there
+// to c.
 inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e, const GridPoint& f,
                      Shortest& shortest) {
   const GridPoint normal = cross(e, f), from = minus(c, q);
   const float square = dot(normal, normal);
   const float s = dot(cross(from, f), normal) / square, t = dot(cross(e, from), normal) / square;
-  // s and t are NaN if the normal is 0; this form of the test then returns.
+  // If the normal is 0, s and t are NaN, and this test returns.
   if (!(s >= 0 && t >= 0 && s + t <= 1)) return;
   GridPoint w;
   for (std::size_t k = 0; k < 3; ++k) w[k] = q[k] + s * e[k] + t * f[k];
@@ -145,7 +146,7 @@ inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e,
 
 }  // namespace grid_distance
 
-/// error: voronoi_error() of the grid.
+/// Returns the distance of c from the triangle. error: voronoi_error() of the grid.
 inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle, float error) {
   using namespace grid_distance;
   const auto& q = triangle.corners;
@@ -165,44 +166,45 @@ inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle
 
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
-  /// The reliable form widens each cell by this many of its half diagonals, 0 to 1. The proof needs
-  /// 1; a smaller value shows that.
+  /// The reliable form widens each cell by this many half diagonals of the cell, 0 to 1. The proof
+  /// needs 1. A smaller value loses neighbours.
   double widening = 1;
-  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
-  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // the reliable form keeps at most these
+  unsigned threads = 0;                               // 0: one per core; changes no answer
+  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // limit for reliable_neighbours()
 };
 constexpr int kVoronoiLargest = 1 << 14;
 
 struct VoronoiCounts {
   std::array<int, 3> cells{};   // of the grid
-  std::uint64_t blocks = 0;     // blocks (single cells too) whose distances were computed
+  std::uint64_t blocks = 0;     // blocks whose distances were computed
   std::uint64_t distances = 0;  // computed distances of a point from a triangle
 };
 
 /// The result of a form of the diagram. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
-  /// Pairs of objects, sorted, each once. The published form: some cell has these two as its
-  /// nearest objects; among equally near objects (as floats) the first counts. The reliable form:
-  /// the objects of `triangles`.
+  /// Pairs of objects, sorted, distinct. In the published form, these are the two nearest objects
+  /// of some cell; of objects with equal distances in float, the first ones. In the reliable form,
+  /// they are the objects of `triangles`.
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
 
-  // Only of the reliable form; the published one leaves these empty.
-  /// Let d be the least distance of an object A from another one. Every pair of triangles, one of
-  /// A and one of another object, that are d apart is among these. Sorted, each once.
+  // The published form leaves the members below empty.
+  /// Let d be the least distance of an object A from any other object. The list has every pair of a
+  /// triangle of A and a triangle of another object that are d apart. Sorted, distinct.
   std::vector<TrianglePair> triangles;
-  /// For each object an upper bound of d, in world units, rounded up; infinite if it has no
-  /// triangle or no other object has one.
+  /// For each object an upper bound of d, in world units. Infinite if the object has no triangles,
+  /// or if no other object has triangles.
   std::vector<double> upper;
 };
 
-/// The published form. Preconditions: the scene satisfies validate(). Throws Error for options that
-/// are out of range.
+/// Computes the published form. Throws Error for options that are out of range. Precondition: the
+/// scene satisfies validate().
 VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
                                      const Progress& progress = {});
 
-/// The reliable form. Preconditions and errors as above. Throws Error if it would keep more pairs
-/// than most_pairs plus some millions: then a cell contains too much of the scene.
+/// Computes the reliable form. Throws Error for options that are out of range, and if it would keep
+/// more pairs than most_pairs plus some millions, because a cell contains too much of the scene.
+/// Precondition: the scene satisfies validate().
 VoronoiNeighbours reliable_neighbours(const Scene& scene, const VoronoiOptions& options,
                                       const Progress& progress = {});
 

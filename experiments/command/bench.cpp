@@ -153,7 +153,7 @@ class BenchCommand {
     options.device = device_of(device_);
     options.self = self_;
     options.seed = seed_of(scene_.names);
-    if (!distances_ && !poses_) validate(options);  // both have peers of their own
+    if (!distances_ && !poses_) validate(options);
     if (!is_cpu(options.device)) {
       RunOptions run;
       run.device = options.device;

@@ -1,5 +1,5 @@
-// Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
-// finds.
+// Reads certificates, scenes and lists of pairs. Prints the verdict of the checker in
+// verify/certificate.
 #include "experiments/command/command.h"
 
 #include <fmt/format.h>
@@ -63,8 +63,8 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// The end of a reason: the meshes in the order whose hash the certificate names. Empty if no order
-// has this hash, or if there are more than four meshes, which have 24 orders.
+// Returns the end of an error message: the meshes in the order that has the certificate's hash.
+// Empty if no order has this hash, or if there are more than four meshes (four have 24 orders).
 std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
                      const std::string& hash) {
   const std::size_t count = meshes.size();
@@ -84,7 +84,6 @@ std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
   return "";
 }
 
-// Certificates are read before the scene, which may be large.
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
   if (!arguments.certificate.empty()) {
@@ -111,17 +110,16 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const auto words = [&](const TakeWord& take) { give_words(scene, take); };
     check_again(arguments, {arguments.certificate}, words, status);
   }
-  // Written last, so that there is no record if the two checkers disagree.
+  // The record is written last, so that there is none if the two checkers disagree.
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   return status;
 }
 
-// The certificate of a frame. Throws Error if its file does not exist.
 Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
   const std::string file = numbered(arguments.certificate, frame);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
-    // A built-in motion has frames up to its last one, so a missing certificate can be made.
+    // If the scene is a built-in motion, the missing certificate can be made.
     const std::vector<std::string>& names = arguments.scene.names;
     const bool motion = names.size() == 1 && is_builtin_scene(names[0]);
     const FrameRange& range = *arguments.frames;
@@ -167,7 +165,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     self = self || has_self(scene);
     ignores = ignores || !scene.ignored.empty();
-    // All frames answer one question: that of the first one's certificate.
+    // All frames are checked with one clearance, that of the first frame's certificate.
     if (!clearance) clearance = certificate ? certificate->clearance : 0;
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
@@ -255,7 +253,8 @@ class CheckCommand {
     to.pairs = pairs_.value_or("");
     if (frames_) to.frames = parse_frames(*frames_);
     if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-    // The scene may come first, and the certificate last: the text of the file decides.
+    // If the scene comes first and the certificate last, they are exchanged. The text of the file
+    // shows whether it is a certificate.
     const auto is_certificate = [&](const std::string& path) {
       const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
       std::string text(100, ' ');
@@ -269,7 +268,7 @@ class CheckCommand {
       to.certificate = std::move(to.scene.names.back());
       to.scene.names.pop_back();
     }
-    // If the first of several names is not a mesh, it names a certificate.
+    // If the first name is not that of a mesh, it is taken for a certificate.
     const bool mesh = has_mesh_extension(to.certificate);
     if (!pairs_ && mesh) {
       throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

@@ -1,5 +1,5 @@
-// Checks certificates of tiles one after the other, and whether they are those of a whole scene.
-// The rows of all tiles, sorted, are the list that is proved.
+// Checks certificates of tiles one after the other, and whether the tiles cover the scene. The
+// sorted rows of all tiles are the list that is proved.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A row of a list: the objects and triangles of its pair, and the line.
+// A row of a list: the numbers of its objects and triangles, and its line of text.
 using ListRow = std::pair<std::array<std::uint64_t, 4>, std::string>;
 
 ListRow row_of(const PairListRows& rows, const TrianglePair& pair) {
@@ -40,13 +40,13 @@ struct CheckedTile {
   std::string file;
   Tile tile;
   double clearance = 0;
-  CheckResult result;  // without the pairs that meet
-  std::string pair;    // the pair that refutes, by its numbers in the whole scene
+  CheckResult result;  // `meeting` is emptied
+  std::string pair;    // the pair that refutes the certificate, by its numbers in the scene
 };
 
-// Says why the tiles do not cover everything. Empty if each tile begins where the previous tile
-// ends, the first has no beginning and the last no end. Then each pair belongs to one tile
-// (docs/tiles.md).
+// Returns the reason why the tiles do not cover the scene. Empty if each tile begins where the
+// previous tile ends, the first tile has no beginning and the last tile has no end. Then each pair
+// belongs to one tile (docs/tiles.md).
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {
@@ -65,7 +65,7 @@ std::string not_whole(const std::vector<CheckedTile>& tiles) {
                                          interval_text(tiles.back().tile));
 }
 
-// How the file differs from the list; empty if it is the list, byte for byte.
+// Returns how the file differs from the list. Empty if they are equal byte for byte.
 std::string other_list(const std::string& path, std::string_view list) {
   const std::string text = read_file(path, kMaxCheckedBytes);
   if (text == list) return "";
@@ -152,7 +152,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     reason = tile.file + ": " + why;
   }
   if (reason.empty() && whole) reason = not_whole(tiles);
-  const int certified = reason.empty() ? kExitDone : kExitBroken;  // whatever list is given
+  const int certified = reason.empty() ? kExitDone : kExitBroken;
   const std::string other = arguments.pairs.empty() ? "" : other_list(arguments.pairs, list);
   if (reason.empty()) reason = other;
   if (!reason.empty() && verdict == Verdict::proved) verdict = Verdict::not_proved;
@@ -187,7 +187,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     check_again(arguments, files, words, certified);
   }
   if (!arguments.json.empty()) {
-    // The keys are those of check_json() about one certificate.
+    // The keys are those of check_json(), which is for one certificate.
     write_json({{"certificate", clean_name(arguments.certificate)},
                 {"scene",
                  {{"name", census.name},

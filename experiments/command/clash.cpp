@@ -1,5 +1,5 @@
-// `farcull clash`: which parts of an assembly clash. Reads the options, and prints the record of
-// clashes().
+// `farcull clash` finds which parts of an assembly clash. This file reads the options, and prints
+// the record of clashes().
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -50,10 +50,10 @@ constexpr const char* kExamples =
     "Exit status 0: no pair has a verdict of --fail-on, in any frame. 1: one has; also if a pair\n"
     "was not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // of a file of --compare
-constexpr const char* kNoTriangles = "the mesh has no triangles";  // a reason of load_mesh()
+constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // limit for a file of --compare
+constexpr const char* kNoTriangles = "the mesh has no triangles";  // load_mesh() gives this reason
 
-// Reads the parts. A mesh without triangles becomes a part without triangles, after the others.
+// Reads the parts. Meshes without triangles become parts without triangles, behind other parts.
 Scene read_parts(SceneArguments files) {
   std::vector<std::string> empty;
   for (;;) {
@@ -69,7 +69,7 @@ Scene read_parts(SceneArguments files) {
       if (error.reason != kNoTriangles || at == files.names.end() || files.names.size() < 2) throw;
       empty.push_back(*at);
       files.names.erase(at);
-      take_reading_notes();  // the next attempt repeats them
+      take_reading_notes();  // drops the notes; the next attempt gives them again
     }
   }
 }
@@ -166,8 +166,9 @@ class ClashCommand {
   }
 
  private:
-  // The arguments, with each folder replaced by the mesh files in it and in its subfolders. A file
-  // in a format that is not read is an error, unless the same part is in the folder as a mesh.
+  // Returns the arguments, with each folder replaced by the mesh files in it and in its subfolders.
+  // Throws Error for a mesh file in a format that is not read, unless the folder has a readable
+  // mesh of the same part.
   SceneArguments parts() const {
     SceneArguments out = scene_;
     out.names.clear();
@@ -220,8 +221,8 @@ class ClashCommand {
     return out.empty() ? usual : out;
   }
   bool only_new() const { return std::ranges::count(split_list(fail_on_.value_or("")), "new") > 0; }
-  // Moves what the scene ignores into the options, and adds --ignore and --only. lacking: what to
-  // do about names that the scene lacks; passed_over after the first frame.
+  // Moves the scene's ignored pairs into the options, and adds --ignore and --only. lacking: what
+  // to do about names that are not in the scene.
   void prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const {
     if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
       scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());
@@ -280,7 +281,7 @@ class ClashCommand {
             if (!outputs.to_stdout()) print(report.text);
           });
     } catch (const Error&) {
-      print_pairs();  // of the frames before
+      print_pairs();
       throw;
     }
     if (json) json->finish();

@@ -1,5 +1,4 @@
-// Declares the commands, parses the command line and dispatches, and prints help.
-// Each command but `help` has a file of its own.
+// Declares the commands, parses the command line, runs the command, and prints help.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +24,7 @@
 
 namespace farcull {
 
-// `farcull help` prints the text of --help, or a file of docs/help, which is compiled in.
+// `farcull help` prints the text of --help, or a compiled-in file of docs/help.
 
 namespace {
 
@@ -39,7 +38,7 @@ constexpr std::array kTopics = {
     // A new topic goes here.
 };
 
-// An indented line for each topic, with its name and its title.
+// Returns an indented line for each topic, with its name and title.
 std::string help_topics_text() {
   std::string out;
   for (const HelpTopic& topic : kTopics)
@@ -94,7 +93,7 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-// Turns an error of CLI11 into an Error with a remedy. `app` is as the parse left it.
+// Turns an error of CLI11 into an Error with a remedy. app: the state after parsing.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = "farcull";
@@ -107,7 +106,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
   const std::string text = error.what();
-  // Unknown words are reported first: they may be why something else is missing.
+  // Unknown words are reported first, since they may be the reason for other errors.
   const std::vector<std::string> words = app.remaining(true);
   if (!words.empty()) {
     const std::string& word = words.front();
@@ -157,7 +156,8 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   return Error(name, text, help);
 }
 
-// If the error is about standard output, its remedy names the option that sent something there.
+// If the error is about standard output, returns an Error whose remedy names the option that writes
+// there.
 Error with_option(const Error& error, int argc, char** argv) {
   constexpr std::array kOutputs = {"--json", "--csv", "--pairs", "--certificate", "-o", "--output"};
   if (error.where != "standard output") return error;
@@ -180,7 +180,6 @@ constexpr const char* kFirstScreen =
     "  farcull run two-tori                       a built-in scene; farcull scenes lists them\n"
     "  farcull compare two-tori                   what each method misses, and its time\n";
 
-// Runs the command that the arguments name; returns the exit status.
 int dispatch(int argc, char** argv) {
   CLI::App app("", "farcull");
   app.get_formatter()->column_width(28);
@@ -203,7 +202,7 @@ int dispatch(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& wanted) {  // --help, --version
+  } catch (const CLI::Success& wanted) {  // --help or --version
     std::ostringstream out;
     app.exit(wanted, out, out);
     write_help(out.str());
@@ -227,14 +226,14 @@ Command add_help(CLI::App& app) { return declare<HelpCommand>(app); }
 int command_line(int argc, char** argv) {
   prepare_output();
   spell_parameters(option_word);
-  // Mesa would print warnings about the devices that it tries. Our own message reports the outcome.
+  // Keeps Mesa from warning about devices that it tries. farcull prints a message of its own.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
-  // llvmpipe's own threads may damage our memory (docs/drivers.md). No thread runs yet, so the
-  // environment may be changed.
+  // The threads of llvmpipe may damage our memory (docs/drivers.md). No thread runs yet, so it is
+  // safe to change the environment.
   ::setenv("LP_NUM_THREADS", "0", 0);
   const Interruptible interruptible;
   try {
-    // For this thread; core/base/parallel.h sets the threads that it starts.
+    // This guard is for the main thread. core/base/parallel.h has one for each thread it starts.
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {
@@ -242,7 +241,7 @@ int command_line(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     complain(kOutOfMemory);
   } catch (const std::system_error& error) {
-    // The system could not start a thread; each needs memory for its stack.
+    // The system could not start a thread, perhaps for lack of memory for the thread's stack.
     const bool memory = error.code() == std::errc::resource_unavailable_try_again ||
                         error.code() == std::errc::not_enough_memory;
     complain(memory ? kOutOfMemory : fault(error));

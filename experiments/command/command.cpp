@@ -1,6 +1,6 @@
 // Declares options with CLI11, for all commands. Checks values and output paths before a command
-// runs. Two paths are one file if device and inode are equal, with links followed. A file that does
-// not exist yet is identified by its folder's device and inode, and its name.
+// runs. A file is identified by device and inode, with links followed. A file that does not exist
+// yet is identified by its name and its folder's device and inode.
 #include "experiments/command/command.h"
 
 #include <fmt/format.h>
@@ -66,7 +66,7 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
       option->type_name(row.type)->required(row.need == Need::must);
     if (*row.group != 0) option->group(row.group);
   }
-  command->footer("");  // else CLI11 appends the parent's footer to a function's text
+  command->footer("");  // keeps CLI11 from appending the parent's footer
   std::visit([&](const auto& text) { command->footer(text); }, footer);
   return command;
 }
@@ -83,7 +83,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
     before += (before.empty() ? "" : " ") + command->get_name();
     command = found.front();
   }
-  // App::help() would describe the command that was parsed, which is `help`.
+  // App::help() is no use here: it would describe the parsed command, which is `help`.
   return command->get_formatter()->make_help(
       command, before.empty() ? command->get_name() : before + " " + command->get_name(),
       CLI::AppFormatMode::Normal);
@@ -99,24 +99,24 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStandardOutput = "standard output";
 
-// Identifies the file of a path. A file that does not exist yet has its folder's device and inode.
+// Identifies a file. If it does not exist yet, device and inode are those of its folder.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
   std::string name;      // empty if the file exists
-  bool regular = false;  // true also if the file does not exist yet
+  bool regular = false;  // true for a regular file, and if the file does not exist yet
   auto operator<=>(const Identity&) const = default;
 };
 
-// The file that writing to the path creates: a link to a missing file is followed to that file.
-// Stops after kMostLinks, where the system gives up too.
+// Returns the path of the file that writing to `path` would create, with links to missing files
+// followed. Follows at most kMostLinks links, as the system does.
 fs::path made_by(fs::path path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;  // if the target is absolute, the result is the target
+    path = path.parent_path() / target;  // this is `target` if it is absolute
   }
   return path;
 }
@@ -185,7 +185,7 @@ void print(const std::string& text) { write_output("-", wrapped(text)); }
 void complain(const std::string& message) { std::fputs(complaint(message).c_str(), stderr); }
 
 void say_notes() {
-  static std::set<std::string> said;  // frames and tiles read the same files again
+  static std::set<std::string> said;  // a file may be read several times, as for frames
   for (const std::string& note : take_reading_notes()) {
     if (said.insert(note).second) complain(note);
   }
@@ -242,7 +242,7 @@ void TerminalProgress::clear() {
   if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
 }
 
-// Cuts the line to the current width of the terminal: a wrapped line could not be overwritten.
+// Cuts the line to the width of the terminal, since a wrapped line could not be overwritten.
 void TerminalProgress::show(std::string line) {
   if (const unsigned columns = terminal_columns(stderr); columns > 1)
     line = line.substr(0, columns - 1);
@@ -289,7 +289,7 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 }
 
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::map<Identity, const NamedFile*> written;  // the first output of each file
+  std::map<Identity, const NamedFile*> written;  // per file: the first output that writes it
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     if (identity && identity->regular && identity->name.empty())
@@ -340,7 +340,7 @@ bool Outputs::to_stdout() const {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames) {
   std::vector<NamedFile> files;
-  std::vector<std::string> to_try;  // for each path the first of its files
+  std::vector<std::string> to_try;  // the first file of each path
   for (const auto& [option, path, example] :
        {std::tuple("--json", &outputs.json, "result.json"),
         std::tuple("--pairs", &outputs.pairs, "result.csv"),
@@ -350,11 +350,11 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("--html", &outputs.page, "page.html"),
         std::tuple("--figure", &outputs.figure, "figure.svg")}) {
     if (!*path) continue;
-    // With two names for standard output, two files would write to it, each at its own position.
+    // Standard output gets one name, so that it is written through one file only.
     if (**path == "/dev/stdout") *path = "-";
     if ((*path)->empty())
       throw Error(option, "the path is empty", "name a file, or - for standard output");
-    // `run a.off --json --pairs b.csv`: CLI11 takes `--pairs` as the value.
+    // In `run a.off --json --pairs b.csv`, CLI11 takes `--pairs` for the value of --json.
     if ((*path)->starts_with("-") && **path != "-") {
       throw Error(option, "its value is missing before '" + **path + "'",
                   "name a file, with ./ before a name that begins with -");

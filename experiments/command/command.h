@@ -1,8 +1,6 @@
-// The commands of the program. Each add_...() declares its options and returns a Command, whose
-// run() executes it. Commands include this file and not <CLI/CLI.hpp>, which costs seconds of
-// compile time per file: only command.cpp and cli.cpp include that.
-//
-// Also the options, files, outputs and progress that several commands share.
+// The commands of the program, and what several commands share: options, files, outputs, progress.
+// Each add_...() declares the options of a command and returns the Command. Only command.cpp and
+// cli.cpp include <CLI/CLI.hpp>, which takes seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -33,23 +31,23 @@ class App;
 
 namespace farcull {
 
-/// The command line of farcull. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or
-/// environment, a device error included.
+/// Runs the command line of farcull. Returns the exit status: 0 done; 1 a guarantee is broken; 2
+/// the input, the environment or a device has a fault.
 int command_line(int argc, char** argv);
 
-using Text = std::optional<std::string>;  // value of an option; empty if it was not given
+using Text = std::optional<std::string>;  // value of an option; nullopt if it was not given
 
 enum class Need : std::uint8_t { may, must };
 
-/// An option, or an argument if the name has no dashes. Parsing the command line writes `value`; a
-/// bool is a flag without a value. `type` stands for the value in the help.
+/// An option, or an argument if the name has no dashes. Parsing the command line sets `value`. An
+/// option with bool* is a flag. `type` stands for the value in the help.
 struct OptionRow {
   std::string name;
   std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
   Need need = Need::may;
-  const char* group = "";  // heading above it in the help; empty: the common one
+  const char* group = "";  // its heading in the help; empty: the common heading
 };
 using Rows = std::vector<OptionRow>;
 inline Rows operator+(Rows first, const Rows& then) {
@@ -60,31 +58,31 @@ inline Rows operator+(Rows first, const Rows& then) {
 /// The end of a help text; a function is called when the help is printed.
 using Footer = std::variant<const char*, std::string, std::function<std::string()>>;
 
-/// Declares a command below another one, or below the program. It lives as long as `parent`.
+/// Declares a subcommand of `parent`, a command or the program. It lives as long as `parent`.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer);
 /// Allows at most one of the subcommands of this command.
 void allow_one_command(CLI::App& command);
-/// Whether the parsed command line names this command.
+/// True if the parsed command line names this command.
 bool given(const CLI::App& command);
 
 /// An option as the help shows it, or an argument if `names` is empty.
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
-  std::string type;  // the word for the value, or an argument's name; empty for a flag
+  std::string type;                // the word for the value in the help; empty for a flag
   bool flag = false;
 };
-/// A declared command with all its subcommands; completion is made from it.
+/// A declared command with all its subcommands.
 struct DeclaredCommand {
   std::string name;  // with the names of its parents, as in "farcull experiment all"
   std::vector<DeclaredOption> options;    // in the order of the help
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
 };
-/// parents: the names of the commands above it.
+/// parents: the names of the commands above `app`.
 DeclaredCommand declared(const CLI::App& app, const std::string& parents = "");
-/// The text that --help prints for the program (no names), a command, or a subcommand. Empty if
-/// there is no such command.
+/// Returns the text of --help for the command with these names, or for the program if there are no
+/// names. Empty if there is no such command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
 
 /// A topic of `farcull help`: a file of docs/help.
@@ -95,20 +93,21 @@ struct HelpTopic {
 };
 std::span<const HelpTopic> help_topics();
 
-/// A declared command. run() returns the exit status and throws Error if the arguments are bad.
+/// A declared command. run() executes it and returns the exit status. It throws Error for bad
+/// arguments.
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;
 };
 
-/// A command whose options are members of a class with add_to() and run().
+/// Makes a Command from a class that has its options as members, and add_to() and run().
 template <class Class, class... Arguments>
 Command declare(CLI::App& parent, const Arguments&... arguments) {
   const auto command = std::make_shared<Class>(arguments...);
   return {command->add_to(parent), [command] { return command->run(); }};
 }
 
-// The commands of the program. The --help of each says what exit status 1 means.
+// The commands of the program. The --help of a command says what exit status 1 means.
 Command add_run(CLI::App& app);
 Command add_verify(CLI::App& app);
 Command add_plan(CLI::App& app);
@@ -127,10 +126,10 @@ Command add_suite(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 
-// A command of `farcull experiment`. Exit status 1: a violation at the budget radius or more.
+// A command of `farcull experiment`. Exit status 1: there was a violation with the budget radius or
+// a larger radius.
 Command add_lemma(CLI::App& experiment);
 
-/// The folder of results unless --out says otherwise; `farcull report` reads it.
 inline constexpr const char* kResultsFolder = "farcull-results";
 
 // ---- options, files, outputs and progress ----
@@ -144,58 +143,61 @@ struct NamedFile {
   std::string path;  // "-": standard output
 };
 
-/// The file of a path; with a range and a place for a number in the path, one file per frame.
+/// Returns one file per frame if there is a range and the path has a place for a number. Otherwise
+/// returns the path.
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
-/// The files that load_scene() and, with a range, FrameSource read for these names: the scene
-/// file and its meshes, or the mesh files, numbered ones once per frame. For a built-in scene of
-/// packaged meshes, and for no arguments (all built-in scenes), the meshes of mesh_folder(). `by`
-/// is SCENE. A file that cannot be read is no error here: reading the scene reports it.
+/// Returns the files that load_scene() reads for these arguments or, with a range, FrameSource:
+/// - the scene file and its meshes, or the mesh files, a numbered file once per frame;
+/// - the meshes of mesh_folder() for a built-in scene that needs them, and if there are no
+///   arguments, which stands for all built-in scenes.
+/// NamedFile::by is SCENE. A file that cannot be read is no error here.
 std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
                                    const std::optional<FrameRange>& range = {});
 
-/// Throws Error naming both options if an output is one of the inputs. Files are compared by device
-/// and inode, with links followed.
+/// Throws Error, which names the two options, if an output is one of the inputs. Files are compared
+/// by device and inode, with links followed.
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-/// As require_not_read(), and throws Error if two outputs are one file, which need not exist yet.
-/// Standard output always counts as an output, wherever it goes. Anything but a regular file (a
-/// terminal, /dev/null) may be an output several times, but "-" only once.
+/// Does the same as require_not_read(), and throws Error if two outputs are one file, even if it
+/// does not exist yet. The file behind standard output counts as an output. A terminal, /dev/null
+/// or another file that is not regular may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
 /// Writes text for people to standard output, with its long lines wrapped (text_table.h).
 void print(const std::string& text);
 
-/// Prints a failure on standard error: one paragraph, indented by nine blanks from its second line
-/// on. Replaces control characters, which paths may hold.
+/// Prints a failure on standard error as one paragraph. Lines after the first are indented by nine
+/// blanks. Replaces control characters, which paths may have.
 void complain(const std::string& message);
 
-/// Prints what readers passed over (take_reading_notes()) on standard error, each line once.
+/// Prints each line of take_reading_notes() once on standard error: what reading files left out.
 void say_notes();
 
-/// load_scene() and say_notes(); then make_self() if `self` is set.
+/// Calls load_scene() and say_notes(), and make_self() if `self` is set.
 Scene read_scene(const SceneArguments& arguments, bool self = false);
-/// The same for stream_scene(), which gives the scene part by part. The arguments must outlive it.
+/// Returns a function that gives the scene part by part (stream_scene()), and then does the same.
+/// The arguments must outlive the function.
 std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
     const SceneArguments& arguments, bool self);
 
-/// As complain(), in red on a terminal: for a guarantee that is broken.
+/// Does the same as complain(), in red on a terminal. For a broken guarantee.
 void complain_broken(const std::string& message);
 
 /// Throws Error if there is nothing to test, since 0 pairs would look like a scene without
-/// collisions. command: the one that tests an object against itself.
+/// collisions. command: a command line that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
-/// Throws Error if the scene has two objects or more, tests none against itself, and all pairs of
-/// objects are ignored, by `ignored` (as in_order() gives it) or by the scene.
+/// Throws Error if the scene has two objects or more, tests none against itself, and `ignored` and
+/// scene.ignored together have all pairs of objects. ignored: a result of in_order().
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
-/// The command followed by the words of a scene, quoted for a shell.
+/// Returns the command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const SceneArguments& scene);
 
 /// One line on standard error that each update overwrites. Nothing is printed without a terminal.
 class TerminalProgress {
  public:
-  /// first: shown at once.
+  /// first: is shown at once.
   Progress callback(const char* first = nullptr);
   void clear();
   TerminalProgress() = default;
@@ -222,14 +224,15 @@ struct Outputs {
   bool to_stdout() const;
 };
 
-/// The outputs of a command that reads `inputs`. Throws Error for everything that can be known to
-/// fail before the command runs: bad paths, outputs that are inputs or one another
-/// (require_apart()), what check_output() refuses. With frames a certificate is one file per frame,
-/// so its name must hold a number; without frames it must not.
+/// Checks the outputs of a command that reads `inputs`, and returns them. Throws Error for what is
+/// known to fail before the command runs: bad paths, and what require_apart() or check_output()
+/// refuses. With frames there is one certificate per frame, so its path must have a place for a
+/// number. Without frames, the path must have no such place.
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
-/// A number from `least` to `most`. Throws Error naming the option: "'TEXT' is WHAT".
+/// Returns the number that the text gives. Throws Error, "'TEXT' is WHAT" of the option, unless it
+/// is from `least` to `most`.
 template <class Value>
 Value number_of(const char* option, const std::string& text, const std::string& what, Value least,
                 Value most, const std::string& remedy) {
@@ -237,31 +240,31 @@ Value number_of(const char* option, const std::string& text, const std::string& 
   if (value && *value >= least && *value <= most) return *value;
   throw Error(option, "'" + text + "' is " + what, remedy);
 }
-/// The index of the text in `words`; 0 if it was not given. Throws Error as number_of() does.
+/// Returns the index of the text in `words`; 0 if it was not given. Throws Error as number_of()
+/// does if `words` lacks it.
 std::size_t word_of(const char* option, const Text& text, const std::vector<std::string>& words,
                     const std::string& what, const std::string& remedy);
-/// Throws Error naming the first option that was given.
+/// Throws Error, which names the first option that was given, if one was given.
 void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
                   const std::string& reason, const std::string& remedy);
 
 /// Throws Error if a name of the scene is empty.
 void check_scene(const std::vector<std::string>& scene);
-/// The seed of the scene if it is a random built-in one.
+/// Returns the seed if the scene is a random built-in scene.
 std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
 
-/// The options of the methods on a command line; experiments/method/options.h has their table.
+/// The options of the methods on a command line. run_options() is the table of these options.
 class MethodOptions {
  public:
-  /// Rows for the named options of the table, in its order; for all options if no names are given.
+  /// Returns rows for the named options, in the order of the table. If there are no names, returns
+  /// rows for all options.
   Rows rows(const std::vector<std::string>& names = {});
-  /// The options that were given.
   GivenOptions given() const;
-  /// The value of an option, and whether it was given.
   const Text& text(const std::string& name) const { return texts_.at(name); }
   bool has(const std::string& name) const { return texts_.at(name) || flags_.at(name); }
 
  private:
-  // One entry per option of the table. Rows point at them, so their addresses must not change.
+  // One entry per option of the table. The addresses must not change, since rows point at entries.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
 };
@@ -271,24 +274,22 @@ double parse_clearance(const std::string& text);
 /// Implements --self: every object of the scene is tested against itself.
 void make_self(Scene& scene);
 
-/// Describes the guarantee that `record` broke, for complain().
+/// Returns a text for complain(): the guarantee that the run broke.
 std::string missed(const Record& record);
 
-/// The value of --device; empty if it was not given. Throws Error if the value is empty.
+/// Returns the value of --device; empty if it was not given. Throws Error if "" was given.
 std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
 OptionRow ignore_row(Text& ignore);
 
-/// The help text of an option of the table.
 std::string help_of_option(const std::string& name);
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"
     "or one scene file (.json: farcull help scene-file); or\n"
     "one built-in scene (farcull scenes lists them)";
-/// The argument that names a scene, and the options for reading its meshes.
 Rows scene_rows(SceneArguments& scene, const char* name = "SCENE",
                 const std::string& help = kSceneHelp, Need need = Need::must);
 inline constexpr const char* kNoRiskHelp =
@@ -302,49 +303,46 @@ inline constexpr const char* kJsonHelp =
 // `farcull check`: checks a certificate, or a list of pairs, against its scene.
 
 struct CheckArguments {
-  std::string certificate;  // a file, numbered for frames; "": only `pairs` is checked
+  std::string certificate;  // a path, with a place for a number if there are frames; "": none
   SceneArguments scene;
-  std::string json = {};   // "" for none; "-": standard output, in place of the text
+  std::string json = {};   // a path; "": none; "-": standard output, in place of the text
   bool self = false;       // every object is tested against itself, as by run --self
-  std::string pairs = {};  // "" for none, or a list as `farcull run --pairs` writes it
-  std::optional<double> clearance = {};  // of the list; a certificate must have the same
+  std::string pairs = {};  // the path of a list that `farcull run --pairs` wrote; "": none
+  std::optional<double> clearance = {};  // must be that of the certificate, if there is one
   std::optional<FrameRange> frames = {};
-  std::optional<FrameRange> tiles = {};  // the numbers of the tiles in the name of the certificate
-  bool verified = false;  // the proved checker must agree; goes with certificates of one scene
+  std::optional<FrameRange> tiles = {};  // the numbers of the tiles
+  bool verified = false;                 // calls check_again()
 };
 
-/// Precondition: a certificate or a list is given. Prints the verdict; with frames one verdict per
-/// frame and one for all, and likewise with tiles. Returns 0 if proved, and if a given list is the
-/// proved one; else 1. Throws Error if the certificate, the scene or the list cannot be read, and
-/// if the list has frames but the arguments name none, or the reverse.
+/// Prints the verdict. With frames or tiles, prints a verdict for each, and one for all. Returns 0
+/// if the certificate or the list is proved, else 1. Throws Error if a file cannot be read, and if
+/// only one of list and arguments has frames. Precondition: a certificate or a list is given.
 int run_check(const CheckArguments& arguments);
 
-/// The largest certificate or list that is read.
 constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
 
 Certificate read_certificate(const std::string& path);
 
-/// Replaces what a terminal cannot show, line by line.
+/// Replaces, line by line, characters that a terminal cannot show.
 std::string clean_lines(const std::string& text);
 
-/// Takes the words of a scene one after the other: those that scene_hash() hashes, in its order.
+/// Is called with each word of a scene: the words that scene_hash() hashes, in the same order.
 using TakeWord = std::function<void(std::uint64_t)>;
 
-/// Gives the certificates and the scene to the checker that Coq has proved
-/// (verify/certificate/coq): `farcull-check-verified`, which is in the folder of this program or in
-/// the PATH. Prints the SHA-256 of the files as this program has them, then the output of the
-/// checker: the same SHA-256, and its verdict. words: gives the words of the scene; status: the
-/// result of this checker. Throws Error if the other one cannot be run, or if they do not agree
-/// whether this is proved.
+/// Gives the certificates and the scene to `farcull-check-verified`, the checker that Coq has
+/// proved (verify/certificate/coq). It is in the folder of this program or in the PATH. Prints the
+/// SHA-256 of the files, then the proved checker's output, which is the same SHA-256 and a verdict.
+/// words: gives the words of the scene. status: the exit status by our own checker. Throws Error if
+/// the proved checker cannot be run, or if its verdict differs.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
-/// Checks certificates of tiles in turn, each with the triangles that meet its tile. So the memory
-/// is that of the largest part of the scene and of one tile. whole: these must be all tiles, in
-/// order. Prints the verdict and returns the exit status, as run_check().
+/// Checks certificates of tiles one after the other. Memory: for the largest part of the scene, and
+/// the triangles that meet one tile. whole: true if the tiles must cover the scene, in order.
+/// Prints the verdict. Returns the exit status, as run_check() does.
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
-/// Gives all words of a scene, or those of its coordinates alone.
+/// Calls take() with all words of a scene; give_coordinates(), only with those of its coordinates.
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
 
@@ -353,10 +351,10 @@ void give_coordinates(const Scene& scene, const TakeWord& take);
 class PictureCommand {
  public:
   CLI::App* add_to(CLI::App& app);
-  /// Returns the exit status: 0 done; 1 a method with a guarantee missed a pair (the picture is
-  /// written all the same). Throws Error if the arguments are bad.
+  /// Writes the picture. Returns the exit status: 0 done; 1 a method with a guarantee missed a
+  /// pair. Throws Error for bad arguments.
   int run() const;
-  /// The parsed and checked options, all but the paths of the files.
+  /// Returns the parsed and checked options, without the paths of outputs.
   PictureArguments arguments() const;
 
  private:
@@ -368,9 +366,9 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
-/// A line for each of these objects that is not closed but would be with --weld: where, and at
-/// which tolerance. At most three lines; none if the objects have more than 4 million triangles in
-/// all.
+/// Returns a line for each of these objects that is not closed, but would be closed with --weld.
+/// The line names the tolerance. At most three lines; none if the objects together have more than 4
+/// million triangles.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
 
 }  // namespace farcull

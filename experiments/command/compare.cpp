@@ -14,7 +14,7 @@
 namespace farcull {
 namespace {
 
-// Replaces this process by the Python program that draws this CSV and exits with `status`.
+// Replaces this process by the Python program, which draws the CSV and exits with `status`.
 void draw(const std::string& csv, const std::string& path, int status) {
   std::FILE* const rows = std::tmpfile();
   if (rows == nullptr || std::fwrite(csv.data(), 1, csv.size(), rows) != csv.size() ||
@@ -117,7 +117,7 @@ class CompareCommand {
   }
 
  private:
-  // Throws Error naming an option that none of the listed methods has.
+  // Throws Error if an option was given that none of the listed methods has.
   void require_meaning() const {
     std::vector<Method> methods;
     const std::string usual = usual_methods(options_.has("clearance"), options_.has("self"));

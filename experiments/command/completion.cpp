@@ -1,6 +1,6 @@
-// A script is a table and a function that reads it. The table has a line for each word of each
-// command, and a line for each option or argument with a value that says how to complete it. The
-// function finds the command among the words and skips values of options.
+// Writes the script that completes command lines of farcull in a shell. It has a table of the words
+// of each command, and of how to complete each value. A function in the script finds the command
+// among the words of the line, skips values of options, and reads the table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,10 +20,10 @@ std::string joined(const std::vector<std::string>& words, const char* between = 
   return fmt::format("{}", fmt::join(words, between));
 }
 
-// How to complete a value or argument of this DeclaredOption::type: words with blanks between. They
-// are those of an enumeration such as "fragment|fixed", or for a known placeholder (METHOD, SCENE,
-// FILE, ...) its values; @files stands for any file, @meshes for files that a scene is read from,
-// @folders for folders. Empty for numbers and other types.
+// Returns the possible values of an option or argument with this DeclaredOption::type, separated by
+// blanks. The type may be an enumeration such as "fragment|fixed", or a placeholder such as METHOD,
+// SCENE or FILE. @files stands for any file, @meshes for files with a scene, @folders for folders.
+// Empty for numbers and other types.
 std::string completion_words(const std::string& type) {
   for (const Option& option : run_options()) {
     if (type == option.type && !option.words.empty()) return joined(option.words);
@@ -35,7 +35,7 @@ std::string completion_words(const std::string& type) {
   std::vector<std::string> words;
   if (type != "SCENE" && type != "NAME") {
     if (type.find('|') == std::string::npos) return "";
-    for (const auto word : std::views::split(type, '|')) {  // without placeholders: N, A:B
+    for (const auto word : std::views::split(type, '|')) {  // placeholders have capitals
       const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
       if (std::ranges::none_of(word, capital)) words.emplace_back(word.begin(), word.end());
     }
@@ -51,8 +51,8 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
   for (const DeclaredCommand& below : command.commands) visit(below, see);
 }
 
-// The branches of `case "$1" in`, one per command: what may follow the command (`below`, `flags`,
-// `first`, `others`).
+// Returns the branches of `case "$1" in`, one per command. A branch sets what may follow the
+// command: `below`, `flags`, `first`, `others`.
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {
@@ -87,7 +87,6 @@ std::string table_of_values(const DeclaredCommand& program) {
   return out;
 }
 
-// The tables, the functions that read them, and what bash calls.
 std::string bash_script(const DeclaredCommand& program) {
   return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
          fmt::format(

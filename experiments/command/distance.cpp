@@ -1,4 +1,4 @@
-// Reads the options of `farcull distance`, then measures one scene or frame after frame.
+// Reads the options of `farcull distance`, then measures one scene or each frame of a motion.
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ constexpr const char* kDistanceExamples =
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
     "answer, or a wrong answer. 2: the input or an option is wrong.";
 
-// The keys of a record that differ between frames; the others hold for all frames.
+// The keys of a record whose values differ between frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
 
@@ -53,8 +53,8 @@ std::string frame_row(long frame, const DistanceRecord& record) {
   return row + "\n";
 }
 
-// The objects of which no answer could say whether another object is inside, as they are not
-// closed.
+// Returns the objects that are not closed. For these, no answer says whether another object is
+// inside.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {

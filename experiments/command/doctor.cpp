@@ -1,4 +1,4 @@
-// Probes the native canvas and the device, and prints the findings. Each probe of the native canvas
+// Probes the native canvas and the device, and prints the findings. A probe of the native canvas
 // counts events that must not happen, so its bound is 0.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,7 +31,7 @@ constexpr std::size_t kCases = 6000;
 constexpr std::uint64_t kPoints = 60'000;
 constexpr std::uint64_t kSeed = 1;
 
-// Half of the solids are fattened triangles, half are made directly from floats.
+// Probes one kernel. Half of the solids are fattened triangles; half are made from random floats.
 ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
   KernelTally tally;
   std::uint64_t different = 0;
@@ -67,7 +67,7 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
 
 using Json = nlohmann::ordered_json;
 
-// The device that GlContext would use for this option. The list says why the others fail.
+// Returns the device that GlContext would use for this option.
 std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
   for (const std::string kind : {"hardware", "software"}) {
     for (const GlDevice& d : devices) {
@@ -89,7 +89,7 @@ Json devices_json(const std::vector<GlDevice>& devices) {
   });
 }
 
-// A number for the table: whole numbers in full, others with three digits.
+// Writes a number for the table: an integer in full, any other number with three digits.
 std::string number(double x) {
   if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
   return fmt::format("{:.3g}", x);
@@ -139,7 +139,6 @@ Json limits_json(const GlInfo& gl, int resolution) {
   return out;
 }
 
-// The floating-point environment in force and the caller's, both detected by arithmetic.
 std::string arithmetic_line() {
   const FloatingPoint callers = callers_floating_point();
   return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
@@ -169,14 +168,14 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
 Json probes_json(const std::vector<ProbeResult>& probes) {
   return json_list(probes, [](const ProbeResult& p) {
     Json out = FARCULL_JSON(p, assumption, name, pass, measured, bound, unit, samples, note);
-    if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // JSON has no number for it
+    if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // JSON has no infinite number
     return out;
   });
 }
 
-// For each of lane_targets(), tests the kernels of both offsets. Counts answers that lose a part of
-// the exact solid and answers that differ from those of the scalar text. Then counts points of
-// triangles that got no sample, or samples that do not bound them. Restores the instruction set.
+// Tests the kernels with each of lane_targets(). Counts answers that lose a part of the exact
+// solid, and answers that differ from those of the scalar kernel. Then counts violations of lemmas
+// 1 and 2 (LemmaRow). Restores the instruction set.
 std::vector<ProbeResult> native_probes() {
   struct Restore {
     std::string target = lane_target();
@@ -244,7 +243,7 @@ void write_report(Json report, bool pass, const std::string& path) {
   write_json(report, path);
 }
 
-// Reports the findings on a machine without OpenGL, or with --device cpu. json: the file, or "".
+// Reports the findings about the native canvas alone. json: a path, or "" for none.
 int doctor_without_gl(const std::string& json) {
   const std::vector<ProbeResult> native = native_probes();
   if (!json.empty()) {
@@ -278,7 +277,7 @@ class DoctorCommand {
     const std::string json = checked({.json = json_}, {}).json.value_or("");
     const FloatingPointGuard guard;
     if (is_cpu(device)) return doctor_without_gl(json);
-    // A missing device is refused before the probes of the native canvas, which take seconds.
+    // Refuses a missing device first, since the probes of the native canvas take seconds.
     const std::vector<GlDevice> devices = GlContext::list_devices();
     const std::optional<int> chosen = choose(devices, device);
     const bool people = json != "-";

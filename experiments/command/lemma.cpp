@@ -1,4 +1,4 @@
-// Runs the lemma experiment at one radius; prints a table, writes JSON.
+// Runs the lemma experiment at one radius. Prints a table, and writes JSON.
 #include <fmt/format.h>
 
 #include "commit.h"
@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The numbers of a row in the output.
 Json numbers_json(const LemmaRow& row) {
   return {{"points", row.points},
           {"violations", row.violations()},
@@ -38,7 +37,7 @@ std::string table_of(std::vector<LemmaRow> rows) {
   return out;
 }
 
-// A canvas with the session that it needs; the worst canvas needs none.
+// A canvas and its session. The canvas "worst" has no session.
 struct LemmaCanvas {
   std::string name;  // native, gl or worst
   std::optional<Session> session;
@@ -56,7 +55,7 @@ struct LemmaCanvas {
     canvas = &session->canvas(fattener, {});
     name = session->canvas_device().native ? "native" : "gl";
   }
-  // The GL device that draws; null for the others.
+  // Returns the GL device that draws; null for canvases other than gl.
   const GlInfo* info() { return name == "gl" ? &session->context().info() : nullptr; }
 };
 
@@ -105,8 +104,8 @@ class LemmaCommand {
     LemmaSettings settings;
     settings.points = points_;
     settings.seed = seed_;
-    // What is drawn gets errors as large as those of doubles, except by GL: its own errors would
-    // hide them.
+    // Drawn triangles are displaced by as much as double arithmetic may err. Not with GL, whose own
+    // errors would hide that.
     settings.displace = on.name != "gl";
     settings.radius = [&rule](const Budget& budget, double step) {
       return lemma_radius(rule, budget, step);
@@ -160,8 +159,7 @@ class LemmaCommand {
 
   std::uint64_t points_ = 100000, seed_ = 1;
   std::string radius_ = "budget", offset_ = "obb";
-  std::string canvas_;  // empty: the canvas of --device, or, without a device, gl if hardware
-                        // answers and passes its probes, else native
+  std::string canvas_;  // empty: the canvas that --device implies
   Text device_, json_;
 };
 

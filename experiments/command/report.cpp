@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// The path of the store in the folder. Throws Error if there is none; if there are shards that are
-// not merged, the remedy is to merge them.
+// Returns the path of the store in the folder. Throws Error if there is no store. If the folder has
+// shards, the remedy is to merge them.
 std::string store_of(const std::string& folder) {
   const std::string path = store_path(folder);
   if (fs::exists(path)) return path;
@@ -37,7 +37,7 @@ std::string store_of(const std::string& folder) {
   throw Error(folder, "holds no results.sqlite", remedy);
 }
 
-// JSON about this program for the Python program.
+// Returns JSON that tells the Python program about studies and scenes.
 std::string context_for_python() {
   Json known = Json::array(), scenes = Json::object();
   for (const Study& study : studies())

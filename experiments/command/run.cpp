@@ -38,7 +38,7 @@ std::vector<ContactKind> parse_kinds(const std::string& list) {
   return out;
 }
 
-// Name, title and end of the help of each command, by RunCommand::Kind.
+// Name, title and end of the help, per command of RunCommand::Kind.
 constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
     {{"run", "cull a scene, test what is left, account for every pair",
       "Examples:\n"
@@ -81,7 +81,7 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
 
 namespace fs = std::filesystem;
 
-// The objects that collide with themselves (two of their triangles do), ascending.
+// Returns the objects with two triangles that collide with each other, ascending.
 std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record) {
   std::set<std::uint32_t> found;
   for (const auto* pairs : {&record.collisions.pairs, &record.collisions.neighbour_pairs}) {
@@ -93,10 +93,10 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
   return {found.begin(), found.end()};
 }
 
-// Lines that say that objects may lie wholly inside closed ones: their boxes do, and their surfaces
-// do not meet. Empty if there are none, or if more than a million pairs of boxes overlap.
+// Returns lines about objects that may lie inside a closed object: the box of the object lies in
+// that of the closed object, and the surfaces do not meet. Empty if there are no such objects, or
+// if more than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record) {
-  // Pairs of objects whose boxes overlap. Below, one box has to lie in the other one.
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
   std::iota(all.begin(), all.end(), 0u);
@@ -126,9 +126,9 @@ std::string nested_line(const Scene& scene, const Record& record) {
       counted(count, "object", "objects"), first);
 }
 
-// The path of the file, relative to the folder of the record.
+// Returns the path of the file, relative to the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
-  // Behind links, `..` is not the folder that the path names, so links are resolved first.
+  // Links are resolved first, since `..` behind a link names another folder than it seems.
   const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
   const fs::path path = fs::absolute(file);
   return (fs::weakly_canonical(path.parent_path()) / path.filename())
@@ -136,7 +136,7 @@ std::string beside(const std::string& file, const std::string& record) {
       .string();
 }
 
-// verify requires the guarantee of every method; plan prints what run would do.
+// `verify` requires the guarantee of every method. `plan` prints what `run` would do.
 class RunCommand {
  public:
   enum class Kind { run, verify, plan };
@@ -214,7 +214,7 @@ class RunCommand {
                  "held; boxes only. With --json and\n--pairs farcull merge joins all parts"});
     return rows;
   }
-  // Throws Error if an output cannot express what another option asks for.
+  // Throws Error if an option needs an output that was not given or cannot have its result.
   void refuse_outputs() const {
     const auto needs_pairs = [&](const char* option, bool given, const char* what) {
       if (!given || outputs_.pairs) return;
@@ -243,7 +243,8 @@ class RunCommand {
     return ignored_names(options_.text("ignore"), options_.text("ignore_file"));
   }
   bool leaves_out() const { return options_.has("only") || !ignored().empty(); }
-  // The pairs of objects that are not tested: those of --ignore, and all but those of --only.
+  // Returns the pairs of objects that are not tested: the pairs of --ignore, and with --only, all
+  // pairs except those of --only.
   std::vector<ObjectPair> left_out(const Scene& scene,
                                    UnknownName lacking = UnknownName::refused) const {
     std::vector<ObjectPair> out = ignored_objects(scene, ignored(), lacking);
@@ -264,13 +265,11 @@ class RunCommand {
     }
     return in_order(std::move(out));
   }
-  // The files that the command reads, which no output may overwrite.
   std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const {
     std::vector<NamedFile> out = scene_files(scene_.names, range);
     if (const Text& file = options_.text("ignore_file")) out.push_back({"--ignore-file", *file});
     return out;
   }
-  // The command line that tests a scene of one object, with --self.
   std::string with_self() const {
     std::string command = kCommands[static_cast<std::size_t>(kind_)][0];
     command = command_with("farcull " + command, scene_);
@@ -281,13 +280,12 @@ class RunCommand {
     if (frames_) command += " --frames " + quoted(*frames_);
     return command + " --self";
   }
-  // For verify the verdict, green or red on a terminal; else empty.
+  // Returns the verdict, green or red on a terminal. Empty for `run` and `plan`.
   std::string verdict_line(const Accounting& accounting) const {
     if (kind_ != Kind::verify) return "";
     const Colour colour = accounting.false_negatives == 0 ? Colour::good : Colour::bad;
     return coloured(verdict_text(accounting), colour, STDOUT_FILENO) + "\n";
   }
-  // Throws Error if an option is impossible tile by tile.
   void refuse_with_tiles(const RunOptions& options) const {
     const auto refuse = [](const std::string& option, bool given, const std::string& why) {
       if (!given) return;
@@ -309,7 +307,7 @@ class RunCommand {
     const Outputs outputs = checked(outputs_, read_files());
     const PairColumns chosen = columns();
     if (outputs.pairs && outputs.json) {
-      try {  // a record is UTF-8
+      try {  // dump() throws if the path is not UTF-8
         static_cast<void>(nlohmann::json(*outputs.pairs).dump());
       } catch (const nlohmann::json::exception&) {
         throw Error("--pairs", "the name of the file is no UTF-8, and the record has to hold it",
@@ -425,7 +423,7 @@ class RunCommand {
         farcull::run_frames(source, question, progress, [&](const FrameReport& report) {
           terminal.clear();
           say_notes();
-          // Written first, so that every frame in the record has its certificate.
+          // The certificate is written first, so that every frame in the record has one.
           if (outputs.certificate)
             write_output(numbered(*outputs.certificate, report.number), report.certificate);
           if (json) json->add(report);

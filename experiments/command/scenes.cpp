@@ -1,4 +1,4 @@
-// Lists the built-in scenes, or writes one of them as meshes.
+// Lists the built-in scenes, or writes a built-in scene as meshes.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -111,7 +111,7 @@ class ScenesCommand {
       throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
     }
     check_output("-");
-    // Files of the folder may be replaced, but not the meshes that the scene is made of.
+    // The command may replace files of the folder, but not the meshes of which the scene is made.
     std::vector<NamedFile> there;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))

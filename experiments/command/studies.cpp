@@ -31,7 +31,6 @@ std::string left_text(const StudiesProgress& p) {
   return p.remaining_s ? ", " + duration(*p.remaining_s) + " left" : "";
 }
 
-// Progress on a terminal: a bar with the time left.
 std::string bar_of(const StudiesProgress& p) {
   constexpr std::size_t kWidth = 20;
   const std::size_t full = p.points > 0 ? kWidth * p.done / p.points : kWidth;
@@ -44,7 +43,7 @@ constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 class StudiesCommand {
  public:
-  // Declares each study, and `all`, as a command of its own, which calls this object.
+  // Declares a command for each study, and the command `all`. They call run() of this object.
   std::vector<Command> add_to(CLI::App& experiment) {
     std::vector<Command> out;
     const auto declare = [&](const std::string& name, const std::string& title,
@@ -90,7 +89,8 @@ class StudiesCommand {
   }
 
  private:
-  // Exit status 1: a method with a guarantee missed a pair; 2: a point could not be measured.
+  // Returns the exit status: 1 a method with a guarantee missed a pair; 2 a point of a study could
+  // not be measured; 0 otherwise.
   int run(const std::string& name, const std::vector<Study>& chosen) const {
     StudiesRequest request;
     request.studies = chosen;
@@ -100,7 +100,7 @@ class StudiesCommand {
                   fmt::format("give 1 to {}", kMostSeed));
     }
     request.folder = out_;
-    // The study "libraries" makes its suite there.
+    // The study "libraries" makes its suite in this folder.
     ::setenv("FARCULL_MADE_SUITE", (out_ + "/suite").c_str(), 1);
     if (suite_) (void)read_suite(*suite_);
     request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
@@ -161,7 +161,7 @@ class StudiesCommand {
         {"contestants", contestants_.value_or("")},
         {"device",
          request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    // The device comes first: without it nothing can be measured, and no file is created.
+    // This throws if there is no such device, before a file is created.
     request.provenance = provenance_now(request.device, options);
 
     TerminalProgress terminal;
@@ -170,7 +170,7 @@ class StudiesCommand {
     std::chrono::steady_clock::time_point last;
     const StudiesSummary summary = run_studies(request, [&](const StudiesProgress& p) {
       if (line) return line(bar_of(p));
-      // Without a terminal: a line when a study begins, and at most one every half minute.
+      // Without a terminal, prints a line when a study begins, then at most one line in 30 seconds.
       const auto now = std::chrono::steady_clock::now();
       if (p.study == shown && now - last < std::chrono::seconds(30)) return;
       shown = p.study;
@@ -179,7 +179,7 @@ class StudiesCommand {
         print(fmt::format("{}: {} of {}{}\n", p.study, p.done, counted(p.points, "point", "points"),
                           left_text(p)));
       } catch (const Error&) {
-        // The measurement continues if the progress cannot be written.
+        // The measurement continues even if progress cannot be printed.
       }
     });
     terminal.clear();

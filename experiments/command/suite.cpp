@@ -1,5 +1,5 @@
-// Reads the options and prints the counts; experiments/suite writes the files, and its ask.py
-// asks a program about them.
+// Reads the options and prints the counts. experiments/suite writes the files of a suite;
+// suite/ask.py runs a program on these files.
 #include <fmt/format.h>
 
 #include "embedded/ask_py.h"

@@ -1,5 +1,5 @@
-// The scene is written as 64-bit words, lowest byte first, so that the proved checker needs no
-// reader of meshes: the number of objects, the sizes of the objects, then all coordinates.
+// Runs the proved checker. The scene is written for it as 64-bit words, lowest byte first: the
+// number of objects, their sizes, then all coordinates. So the checker need not read meshes.
 #include "experiments/command/command.h"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ constexpr const char* kRemedy =
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
 
 // Throws Error unless the checker's output is about these files, and its verdict fits its exit
-// status. So another program in its place, or other files, prove nothing.
+// status.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
                   const std::string& scene, bool proved) {
   std::istringstream lines(said);

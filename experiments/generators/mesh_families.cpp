@@ -1,5 +1,4 @@
-// The families of meshes, which docs/suite.md describes one by one. A motion has a member for each
-// frame.
+// The families of meshes. docs/suite.md describes each family.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -50,7 +49,7 @@ Objects accordion(RandomDraws&, double layers, int width) {
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
-/// Point i of the unit circle. Each quarter is computed by a rational parameter, without sines.
+/// Returns point i of the unit circle, without sines: from a rational parameter in each quarter.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
@@ -69,7 +68,7 @@ Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
     const double radius = 4 + across.x() * (1 + 0x1p-10 * draws.between(-1, 1));
     return Vec3(along.x() * radius, along.y() * radius, across.y() + 2 * pitch * i / turn);
   });
-  // The last row of vertices around the tube is the first one.
+  // Replaces the last row of vertices around the tube by the first row.
   for (auto& triangle : out.triangles) {
     for (std::uint32_t& v : triangle) {
       if (v % (around + 1) == around) v -= around;
@@ -103,7 +102,7 @@ Objects degenerate(RandomDraws& draws, double one_in, int cells) {
     const int way = draws.below(3);
     if (way < 2) k = i;
     if (way == 1) j = i;
-    if (way == 2) {  // the middle of an edge: three corners on a line
+    if (way == 2) {  // k is the middle of an edge, so the three corners are on a line
       const Vec3 middle = (out.vertices[i] + out.vertices[j]) / 2;
       out.vertices.push_back(middle);
       k = last(out);
@@ -140,8 +139,8 @@ SuiteObject scan(RandomDraws& draws, int level) {
   return out;
 }
 
-/// The leftmost vertex of the second scan along x is left of the rightmost of the first by the
-/// depth.
+/// Two scans. In x, the least vertex of the second scan is `depth` below the largest vertex of the
+/// first scan.
 Objects scans(RandomDraws& draws, double depth, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = scan(draws, level);
@@ -204,7 +203,7 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// The outermost shell is moved by more than the gap, so that it mostly crosses the middle one.
+/// The outermost shell is moved by up to more than the gap, so it mostly crosses the middle shell.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -264,11 +263,10 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-// Motions. All frames are made with the same draws; only `now` differs. All but the cogs lean, so
-// that no face is parallel to an axis of the coordinates. Their coordinates have few bits, so that
-// contacts stay exact.
+// Motions. All frames are made with the same draws; only `now` differs. Except in cogs, no face is
+// parallel to an axis of the coordinates, and coordinates have few bits, so that contacts are
+// exact.
 
-/// A box of 12 triangles, oriented outwards.
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
   SuiteObject out;
   for (int i = 0; i < 8; ++i) {
@@ -375,7 +373,7 @@ MeshFamily motion(const char* name, decltype(MeshFamily::make) make,
   return out;
 }
 
-/// A row of the table of families. small: a small suite has the first member.
+/// Returns a row of the table of families. small: true if a small suite has the first member.
 MeshFamily family(const char* name, decltype(MeshFamily::make) make, bool self, bool small,
                   std::vector<MeshFamily::Member> members) {
   return {name, self, make, std::move(members), small ? 1u : 0u};

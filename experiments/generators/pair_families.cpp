@@ -1,4 +1,4 @@
-// The families of pairs of a suite, which docs/suite.md describes one by one.
+// The families of pairs. docs/suite.md describes each family.
 #include <cmath>
 
 #include "experiments/generators/pair_generators.h"
@@ -8,8 +8,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// The rotation of the quaternion w + xi + yj + zk, times its squared length. Rotations come from
-/// quaternions with whole parts, so that no sine is taken.
+/// Returns the rotation of the quaternion w + xi + yj + zk, times the quaternion's squared length.
 Frame scaled_rotation(double w, double x, double y, double z) {
   const Vec3 first(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y));
   const Vec3 second(2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x));
@@ -17,7 +16,7 @@ Frame scaled_rotation(double w, double x, double y, double z) {
   return {{first, second, third}};
 }
 
-/// The axes of the coordinates, in any order and direction.
+/// Returns the axes of the coordinates, in random order, each in random direction.
 Frame straight_frame(RandomDraws& draws) {
   Frame out{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
   std::swap(out.axis[0], out.axis[draws.below(3)]);
@@ -26,18 +25,18 @@ Frame straight_frame(RandomDraws& draws) {
   return out;
 }
 
-// The families of contacts: the triangles have one common point, or lie in one plane. The whole
-// coordinates have ever more bits; b is then moved by one unit in one pair of three.
+// The families of contacts: the two triangles have one common point, or lie in one plane. The
+// parameter is the number of bits of the integer coordinates.
 
 const std::vector<double> kContactBits = {8, 16, 24, 32, 40, 52};
 
-/// `v`, or -v if `v` points against `towards`.
+/// Returns v, or -v if the angle between v and `towards` is above 90 degrees.
 Vec3 along(const Vec3& v, const Vec3& towards) { return v.dot(towards) < 0 ? Vec3(-v) : v; }
 
 Vec3 normal(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
 
-/// A triangle whose coordinates are multiples of 4, so that their quarters are whole. This extent
-/// and that of arm() keep all coordinates of a pair below 2^bits.
+/// Returns a triangle whose coordinates are multiples of 4. The extents here and in arm() keep all
+/// coordinates of a pair below 2^bits.
 Corners first_triangle(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 4);
   return {4 * draws.whole_point(extent), 4 * draws.whole_point(extent),
@@ -48,7 +47,8 @@ Vec3 arm(RandomDraws& draws, double bits) {
   return draws.whole_point(std::ldexp(1, static_cast<int>(bits) - 3));
 }
 
-/// The pair, with b moved by a unit one time in three, and with all coordinates scaled by 2^-bits.
+/// Returns the pair, scaled by 2^-bits. In one call of three, b moves by up to a unit along each
+/// axis.
 MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
     const Vec3 step = draws.whole_point(1);
@@ -60,7 +60,7 @@ MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) 
   return out;
 }
 
-/// True three times in four: b then stays on one side of a.
+/// Returns true in three calls of four. If true, b stays on one side of a.
 bool stays_aside(RandomDraws& draws) { return !draws.chance(4); }
 
 MadePair vertex_vertex(RandomDraws& draws, double bits) {
@@ -75,7 +75,7 @@ MadePair vertex_vertex(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, {a[0], a[0] + u, a[0] + v});
 }
 
-/// A pair in which b has a corner at `at`, a point of a.
+/// Returns a pair in which b has a corner at `at`, a point of a.
 MadePair corner_at(RandomDraws& draws, double bits, const Corners& a, const Vec3& at) {
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
@@ -98,8 +98,8 @@ MadePair vertex_face(RandomDraws& draws, double bits) {
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
-/// b has an edge in the plane of a. This edge is an edge of a, or it is parallel to one and begins
-/// inside a.
+/// b has an edge in the plane of a. This edge is an edge of a, or begins inside a and is parallel
+/// to an edge of a.
 MadePair edge_face(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const Vec3 quarter = (a[1] - a[0]) / 4;
@@ -125,7 +125,7 @@ MadePair edge_edge(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, {at - u, at + draws.whole(1, 3) * u, at + v});
 }
 
-/// Two triangles of one plane: their corners are whole combinations of two whole vectors.
+/// Two triangles in one plane. Their corners are integer combinations of two integer vectors.
 MadePair coplanar(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 5);
   const Vec3 u = draws.whole_point(extent);
@@ -140,7 +140,7 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   Corners a = {drawn(), drawn(), drawn()};
   Corners b = {drawn(), drawn(), drawn()};
   const int way = draws.below(4);
-  if (way == 0) {  // both have an edge in common
+  if (way == 0) {  // a and b have a common edge
     b[0] = a[0];
     b[1] = a[1];
   }
@@ -153,8 +153,8 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Two triangles that touch in one plane. b is then moved by `steps` of the shortest steps, either
-/// out of the plane, or in the plane across the edge at which both touch.
+/// Two triangles that touch in one plane. b then moves by `steps` of the shortest steps: out of the
+/// plane, or in the plane across the common edge.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
@@ -194,7 +194,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
   for (Vec3& p : out.b) p[moved] += by;
   if (units == 0) {
     out.neighbours = draws.chance(3);
-    // b equals a but for one corner, which moves by one unit.
+    // One corner of b, which was equal to a, moves by one unit.
     if (!out.neighbours && draws.chance(2)) out.b[draws.below(3)][moved] += draws.sign();
   }
   each_corner(out, [&](Vec3& p) { p *= 0x1p-50; });
@@ -203,7 +203,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
 
 // The families of distances, and those of shapes.
 
-/// 2^-k and -2^-k for each k below. 0 comes first; with zero_each, before each k.
+/// Returns 0, and then 2^-k and -2^-k for each k below. With zero_each, a 0 comes before each k.
 std::vector<double> signed_powers(bool zero_each) {
   std::vector<double> out;
   for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
@@ -257,7 +257,7 @@ MadePair gap_edge(RandomDraws& draws, double gap) {
   return mapped(frame_of(draws), a, b);
 }
 
-/// Two triangles of about the size 1. They may meet in any way, or not at all.
+/// Two triangles of about size 1, which may meet or not.
 MadePair near_pair(RandomDraws& draws) {
   const double side = draws.sign();
   const double gap = std::ldexp(side, -draws.below(12));
@@ -301,7 +301,7 @@ MadePair mixed_scales(RandomDraws& draws, double ratio) {
   };
   Corners a = {drawn(), drawn(), drawn()};
   if (draws.chance(2)) {
-    for (Vec3& p : a) p.z() = 0;  // its points then stay in a plane of the frame
+    for (Vec3& p : a) p.z() = 0;
   }
   const Vec3 at[] = {a[0], (a[0] + a[1]) / 2, (2 * a[0] + a[1] + a[2]) / 4};
   const Vec3 place = at[draws.below(3)];
@@ -342,23 +342,22 @@ MadePair in_units(MadePair pair, double bits) {
   return pair;
 }
 
-/// A point, a segment or a triangle (dimension 0, 1 or 2) that contains the point `at`: in its
-/// inside, on an edge or as a corner.
+/// Returns a point, a segment or a triangle (dimension 0, 1 or 2) that contains the point `at`.
 Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double extent) {
   if (dimension == 0) return {at, at, at};
   const Vec3 u = draws.whole_point(extent);
   if (dimension == 1) {
     const int way = draws.below(4);
-    if (way == 0) return {at, at + u, at + u};  // the point is an end, and two corners are equal
+    if (way == 0) return {at, at + u, at + u};
     if (way == 1) return {at - u, at + u, at - u};
-    if (way == 2) return {at - u, at + 2 * u, at + u};  // three corners on a line
+    if (way == 2) return {at - u, at + 2 * u, at + u};
     return {at - u, at, at + u};
   }
   const Vec3 v = draws.whole_point(extent);
   return with_point(draws.below(3), at, u, v);
 }
 
-/// The step by which b moves: 0, or one time in three up to a unit along each axis.
+/// Returns the step by which b moves: in one call of three, up to a unit along each axis, else 0.
 Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);
@@ -387,15 +386,15 @@ MadePair segments(RandomDraws& draws, double bits) {
   return in_units({{a, b}}, bits);
 }
 
-/// A pair of neighbours, given by coordinates along the axes of a random frame.
+/// Returns a pair of neighbours. a, b: coordinates along the axes of a random frame.
 MadePair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
   MadePair out = mapped(frame_of(draws), a, b);
   out.neighbours = true;
   return out;
 }
 
-/// Both triangles have the edge from 0 to 1 on the x axis. a lies in the plane z = 0. The third
-/// corner of b is above this plane by the height, on a's side of the edge or on the other side.
+/// a and b have a common edge, from 0 to 1 on the x axis. a lies in the plane z = 0. The third
+/// corner of b is `height` above this plane, on either side of the edge.
 MadePair fold_edge(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.25, 1);
   const double y = draws.coarse(0.25, 1);
@@ -407,8 +406,8 @@ MadePair fold_edge(RandomDraws& draws, double height) {
   return fold(draws, {p, q, Vec3(x, y, 0)}, {p, q, Vec3(u, v, height)});
 }
 
-/// Both triangles have a corner at the origin, and a lies in the plane z = 0. The second corner of
-/// b has the height, and is mostly over the inside of a. The third corner is far above.
+/// a and b have a common corner at the origin, and a lies in the plane z = 0. The second corner of
+/// b is `height` above the plane, mostly over the interior of a. The third corner is far above.
 MadePair fold_vertex(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.5, 1);
   const double y = draws.coarse(0.5, 1);
@@ -448,7 +447,7 @@ Frame leaning_frame(RandomDraws& draws) {
   const double w = draws.sign();
   const double x = draws.sign();
   const double y = draws.sign();
-  // With four parts of one size the rotation only exchanges axes.
+  // One part is 0, since a rotation with four parts of magnitude 1 only exchanges axes.
   return scaled_rotation(w, x, y, 0);
 }
 

@@ -1,4 +1,5 @@
-// Draws triangles by generators, a window full at a time, and tests their points exactly.
+// Generators make triangles, which are drawn in windows. Points of the triangles are tested
+// exactly.
 #include "experiments/lemma/lemma.h"
 
 #include <fmt/format.h>
@@ -16,10 +17,10 @@ namespace {
 constexpr double kUsualDepth = 128;  // LemmaSettings::depth
 
 using Random = RandomNumbers;
-using Weights = std::array<int, 3>;  // of the corners of a triangle
+using Weights = std::array<int, 3>;  // a point of a triangle, by weights of its corners
 
-// A triangle in pixel space, and the weights of its points to test. The origin is the centre of the
-// triangle's cell, which is a pixel corner.
+// A triangle in pixel space, and the points of it to test. The origin, a pixel corner, is the
+// centre of the triangle's cell.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<Weights> weights;
@@ -39,8 +40,8 @@ std::vector<Weights> random_weights(Random& random, int count) {
   return out;
 }
 
-// A short segment at 45 degrees in the image, with its middle at q. Its box has a face one radius
-// away from q, along the other diagonal.
+// A short segment at 45 degrees in the image, with its middle at q. A face of its box is one radius
+// away from q in the direction at right angles.
 Trial diagonal_segment(Random& random, const Vec3& q) {
   const Vec3 half(0x1p-14, 0x1p-14 * random.sign(), 0);
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
@@ -49,10 +50,9 @@ Trial diagonal_segment(Random& random, const Vec3& q) {
 // Makes trials of one kind.
 struct Generator {
   const char* name;
-  bool large;  // trials reach 24 px and have cells of 128 px; else they are tiny, in cells of 6 px
-  int side;    // px, of the window; a power of two together with the border, so that coordinates
-               // reach the viewport's rim
-  bool rim;    // cells only in the window's far corner
+  bool large;  // true: trials of up to 24 px in cells of 128 px; false: tiny trials, cells of 6 px
+  int side;    // side of the window in px; with the border, a power of two
+  bool rim;    // true: only cells in the window's far corner
   Trial (*make)(Random&);
 };
 
@@ -96,7 +96,7 @@ Trial diagonal_triangle(Random& random) {
       random_weights(random, 120)};
 }
 
-// A triangle that contains the direction of the view, exactly or nearly.
+// A triangle whose plane contains the direction of the view, exactly or nearly.
 Trial edge_on(Random& random) {
   const Vec3 a = in_ball(random, 10), b = in_ball(random, 10);
   Vec3 c = a + random.unit() * (b - a);
@@ -166,9 +166,9 @@ Window lab_window(int side, double depth) {
           .hi = half};
 }
 
-// Moves each corner by kMaxDoubleError along each axis, as double arithmetic may. In half of the
-// cases one vector moves all corners, so that the triangle's points move as far as possible; in the
-// other half each corner has its own vector, so that edges turn.
+// Moves each corner by kMaxDoubleError along each axis. In half of the cases, one vector moves all
+// corners, so that points move as far as possible. In the other half, each corner has its own
+// vector, so that edges turn.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
   const bool turn = random.below(2) != 0;
   Vec3 by(0, 0, 0);
@@ -178,8 +178,8 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// As depth_rounding(), in steps of 2^-24, but also for a buffer of 16 bits. That buffer rounds by
-// 1 / (2^16 - 1) more when it stores, and by 2^-24 when it is read back as a float.
+// Returns depth_rounding(), in steps of 2^-24. For a buffer of 16 bits, two errors are added: up to
+// 1 / (2^16 - 1) when it stores, and up to 2^-24 when it is read back as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }
@@ -192,7 +192,7 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
     ++row.no_sample;
     return;
   }
-  if (!std::isfinite(entry) || !std::isfinite(exit)) {  // no kernel returns this
+  if (!std::isfinite(entry) || !std::isfinite(exit)) {  // a correct kernel returns finite numbers
     ++row.not_bounding;
     row.largest_steps = row.largest_px = HUGE_VAL;
     return;
@@ -206,13 +206,13 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
   row.largest_px = std::max(row.largest_px, by * step);
 }
 
-// Random streams: for the trials, and for their depth in a deep window.
+// Random numbers for the trials, and for the depths of trials in a deep window.
 struct Streams {
   RandomNumbers trials;
   RandomNumbers lifts;
 };
 
-// Runs one window full of trials and adds its counts to the row.
+// Draws one window with trials, and adds the counts to the row.
 void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
                const Generator& generator, Streams& random, std::uint64_t wanted, LemmaRow& row) {
   const int side = settings.side > 0 ? settings.side : generator.side;
