@@ -106,7 +106,7 @@ class Syntax : public nlohmann::json_sax<json> {
   const long& line_;
   std::vector<std::set<std::string>> keys_;
   int arrays_ = 0;    // number of open arrays
-  std::string last_;  // the previous key of the outermost object
+  std::string last_;  // the key of the outermost object that was read last
 };
 
 // Returns the path of a mesh whose name is relative to the scene file.
