@@ -239,8 +239,7 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest =
-    0x1p-5;  // px; for such small sides, other pairs nearby rarely hide a missed pair
+constexpr double kSmallest = 0x1p-5;  // px; other pairs nearby rarely hide a missed pair
 
 // Four series:
 // (1) With 8 subpixel bits, triangles of each size at the published radius, 10^6 placements in

@@ -14,8 +14,7 @@ namespace farcull {
 namespace {
 
 constexpr int kPositions = 4;
-constexpr int kMostFarResolution =
-    256;  // px; at higher resolutions FAR takes minutes and misses little
+constexpr int kMostFarResolution = 256;  // px; above it FAR takes minutes and misses little
 
 // Moves the pixel grid of each view by up to a pixel along both axes. Windows are centred on the
 // places where objects may meet, so the function adds such a place: two objects of one tiny

@@ -102,10 +102,9 @@ struct LemmaPoint {
 
 /// FAR on many small patches of triangles that are placed into each other at random (run_point.h).
 struct PlacementPoint {
-  std::string from;  // built-in scene; patches are cut from its first two objects
-  bool grazing =
-      false;  // true: a corner of one patch pokes through the other patch; false: the patches cross
-  bool pairs = false;  // each patch is one triangle, and the two triangles cross
+  std::string from;      // built-in scene; patches are cut from its first two objects
+  bool grazing = false;  // a corner of one patch pokes through the other; false: patches cross
+  bool pairs = false;    // each patch is one triangle, and the two triangles cross
   int widening = 0;  // only for pairs; 0: drawn anywhere; 1, 2 or 4: drawn from a CornerStratum of
                      // this multiple of the usual width
   double side = 1;   // px, mean longest side of a triangle

@@ -141,8 +141,7 @@ class PatchSource {
 
  private:
   Scene from_;
-  std::array<std::vector<std::vector<std::uint32_t>>, 2>
-      around_;  // for each object and each vertex of the scene, the object's triangles there
+  std::array<std::vector<std::vector<std::uint32_t>>, 2> around_;
 };
 
 /// Returns the seed of a window of a point. Points that differ only in radius or subpixel bits have

@@ -30,7 +30,7 @@ struct Task {
   double seconds = 0;                       // time of this run
   std::size_t measured = 0;                 // points
   std::size_t visits = 0,
-              visits_left = 0;  // a visit measures an untimed point, or one round of a timed point
+              visits_left = 0;  // a visit: an untimed point, or a round of a timed one
 };
 
 void make_folder(const std::string& folder) {

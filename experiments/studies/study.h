@@ -139,8 +139,7 @@ struct PlacementCounts {
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
   bool promises = false;
-  std::optional<CornerStratum> stratum =
-      {};  // placements were drawn from it; empty: drawn anywhere
+  std::optional<CornerStratum> stratum = {};  // placements come from it; empty: from anywhere
   FARCULL_FIELDS(placements, colliding_placements, missed_placements, colliding, missed,
                  largest_miss_px, radius_px, budget_px, promises, stratum)
 };
@@ -221,8 +220,7 @@ struct SetCounts {
   std::uint64_t triangles = 0, objects = 0;  // of the scene
   std::uint64_t accounted = 0;  // pairs of triangles of different objects; the accounting decided
                                 // all of them (verify/distance_accounting.h)
-  bool promises =
-      false;  // the method guarantees to lose no nearest neighbour and no nearest pair of triangles
+  bool promises = false;        // guarantees to lose no nearest neighbour and no nearest pair
   std::string scene_hash;
   FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
 };
@@ -233,10 +231,9 @@ struct DistanceCounts {
   DistanceErrors errors;    // by kind (measure/bench.h)
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
-  std::uint64_t wrong =
-      0;  // distances that are not the double nearest to the exact one, or were not asked for
-  bool promises = false;  // every distance is guaranteed to be the double nearest to the exact one
-  std::string library = {};  // with its version
+  std::uint64_t wrong = 0;      // distances that are not the nearest double, or were not asked for
+  bool promises = false;        // guarantees that each distance is the double nearest to the truth
+  std::string library = {};     // with its version
   std::string scene_hash;
   FARCULL_FIELDS(asked, errors, triangles, objects, accounted, wrong, promises, library, scene_hash)
 };
@@ -289,10 +286,8 @@ bool breaks_promise(const Measurement& measurement);
 struct GridChoice {
   bool quick = false;      // the small grid, for a first look and for tests
   std::uint64_t seed = 1;  // seed of random points; at least 1
-  std::string suite =
-      {};  // for the study "libraries": folder of a suite; empty: a suite is generated
-  std::vector<std::string> contestants =
-      {};  // for the study "libraries": whom to measure; empty: all
+  std::string suite = {};  // for the study "libraries": folder of a suite; empty: it is made
+  std::vector<std::string> contestants = {};  // for the study "libraries"; empty: all
 };
 
 struct Study {

@@ -97,9 +97,8 @@ PointResult measure_scene(const Point& point, MeasurementContext& lab) {
   return {.counts = counts, .times = {.exact = lab.truth().ms}, .device = "cpu"};
 }
 
-constexpr const char* kBoxes = "cgal-boxes";  // its candidates: triangles whose boxes meet
-constexpr const char* kOriented =
-    "fcl-obb";  // its candidates: leaves of FCL's trees whose oriented boxes meet
+constexpr const char* kBoxes = "cgal-boxes";  // finds triangles whose boxes meet
+constexpr const char* kOriented = "fcl-obb";  // finds leaves of trees whose oriented boxes meet
 
 std::vector<PointScene> culled_scenes(bool quick) {
   std::vector<const char*> names = {"two-bunnies",     "armadillo-elephant", "dragon-bunny",

@@ -616,7 +616,7 @@ def table_of(kind, rows):
         total.add(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
     lines = [head] + [cells_of(name, row) for name, row in [*rows.items(), ('all', total)]]
-    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for outcomes that never occurred
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for outcomes that never came
     widths = [max(len(line[i]) for line in lines) for i in kept]
     text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
                      for line in lines)

@@ -283,9 +283,8 @@ std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   }
 }
 
-constexpr int kPoints = 24;  // points for each closed object
-constexpr std::size_t kDistances =
-    530;  // most questions for each family of pairs, as in the small suite
+constexpr int kPoints = 24;              // points for each closed object
+constexpr std::size_t kDistances = 530;  // pairs for each family, as in the small suite
 
 }  // namespace
 

@@ -58,9 +58,8 @@ struct SuitePairs {
 
 /// A colliding pair of a mesh.
 struct SuiteMeshPair {
-  TrianglePair pair;  // of SuiteMesh::scene
-  std::uint32_t shared =
-      0;  // number of vertices that both triangles use, 0 to 3; 0 in different objects
+  TrianglePair pair;         // of SuiteMesh::scene
+  std::uint32_t shared = 0;  // common vertices, 0 to 3; 0 in different objects
   auto operator<=>(const SuiteMeshPair&) const = default;
 };
 

@@ -153,9 +153,7 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  const std::array<std::uint64_t, 4>& key() const {
-    return key_;
-  }  // a's object and triangle, then b's
+  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle of a, then b
   const std::string& line() const { return line_; }
 
   [[noreturn]] void fail(const std::string& reason) const {

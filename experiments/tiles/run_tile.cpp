@@ -86,8 +86,7 @@ class Loads {
 };
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMost = std::size_t{1}
-                              << 31;  // limit of triangles and objects, see plan_pairs()
+constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, see plan_pairs()
 
 // Vertices get new numbers part by part, since no two parts share a vertex.
 class Gathering {
@@ -184,8 +183,7 @@ class Gathering {
   std::size_t series_ = 0;       // index in census_.sizes of the series of the next object
   std::uint64_t of_series_ = 0;  // objects of this series before the next object
   std::uint64_t objects_ = 0;
-  std::vector<std::uint32_t>
-      vertex_;  // for each vertex of the part, its number in the tile, or kNone
+  std::vector<std::uint32_t> vertex_;  // the number in the tile of each vertex of the part
 };
 
 // Returns the pairs of objects, with the numbers that the objects have in the part. Leaves out a

@@ -39,8 +39,7 @@ Number parse_number(std::string_view token, double& value);
 class TextReader {
  public:
   struct Rules {
-    char comment =
-        '\0';  // begins a comment if it stands where a token may begin; '\0': no comments
+    char comment = '\0';        // begins a comment where a token may begin; '\0': no comments
     bool continuation = false;  // a backslash before the end of a line joins the next line to it
   };
 
