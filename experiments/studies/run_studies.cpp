@@ -29,8 +29,7 @@ struct Task {
   std::map<std::size_t, Measurement> rows;  // the rows that open points have so far
   double seconds = 0;                       // time of this run
   std::size_t measured = 0;                 // points
-  std::size_t visits = 0,
-              visits_left = 0;  // a visit: an untimed point, or a round of a timed one
+  std::size_t visits = 0, visits_left = 0;  // a visit: an untimed point, or a round of a timed one
 };
 
 void make_folder(const std::string& folder) {
