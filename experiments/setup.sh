@@ -2,8 +2,7 @@
 # Shared by the scripts in experiments/ and tests/: functions that install packages and build.
 # A script sources this file, then calls farcull_setup for the packages and farcull_build for the
 # program. `bash experiments/setup.sh` by itself installs the packages and does nothing else.
-#
-# It must work where there is nothing but Debian and a checkout: no sudo, no git, no terminal, a
+# The script must work where there is nothing but Debian and a checkout: no sudo, no git, no terminal, a
 # closed stdin, an empty environment. A second run installs and builds nothing.
 set -euo pipefail
 
@@ -11,7 +10,7 @@ farcull_root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 
 # If stdin were closed, the next file that a program opens would become its stdin.
 exec </dev/null
-# dpkg needs PATH in the environment, with the sbin folders, which `su` and cron leave out.
+# dpkg needs PATH in the environment, including the sbin folders. `su` and cron leave these out.
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin"
 
 # Packages that the program needs, and that CMake looks for when it configures the tests.
@@ -44,7 +43,7 @@ farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis p
 # Packages of tests that are labelled "rare", 300 MB: for pages in a browser, LaTeX of the report, and the paper as a PDF.
 farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 
-# Prints those of farcull_packages that are not completely installed, one per line.
+# Prints the packages of farcull_packages that are not completely installed, one per line.
 farcull_missing() {
   local package held
   # shellcheck disable=SC2016  # the format is dpkg's, not the shell's
@@ -62,18 +61,18 @@ farcull_as_root() {
   if ((EUID == 0)); then "${command[@]}"; else sudo "${command[@]}"; fi
 }
 
-# farcull_install PACKAGES...: one attempt. `update` may fail because of a source that we do not
-# need, so only the status of `install` counts. It waits while another apt holds the lock, since a new
-# machine upgrades itself in the background.
+# farcull_install PACKAGES...: tries once to install. `update` may fail because of a source that is not
+# needed, so only the status of `install` counts. apt-get waits while another apt holds the lock, since a
+# new machine upgrades itself in the background.
 farcull_install() {
   local -a apt_get=(farcull_as_root apt-get -o DPkg::Lock::Timeout=300)
   "${apt_get[@]}" update || echo "apt-get update failed; trying with the lists that are there"
   "${apt_get[@]}" install --yes --no-install-recommends "$@"
 }
 
-# Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
-# returns 2. A script that needs more packages appends them to farcull_packages first. Nothing is
-# installed or built if FARCULL_BUILT is set, since the calling script has built.
+# Installs the missing packages of farcull_packages. If that is impossible, prints what to do, and returns
+# 2. A script that needs more packages first appends them to farcull_packages. Nothing is installed if
+# FARCULL_BUILT is set, since the calling script has built already.
 farcull_setup() {
   if [[ -n ${FARCULL_BUILT-} ]]; then return 0; fi
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
@@ -93,12 +92,12 @@ farcull_setup() {
   mkdir -p "$farcull_root/build" || return 2
   echo "setup: installing ${#missing[@]} packages: ${missing[*]}"
   if ! farcull_install "${missing[@]}" >"$log" 2>&1; then
-    # The second attempt comes after a pause for the network. Before it, dpkg completes an
-    # installation that was killed earlier.
+    # The network gets a pause, and dpkg completes an installation that was killed earlier. Then the second
+    # attempt follows.
     sleep 5
     farcull_as_root dpkg --configure -a >>"$log" 2>&1 || true
     if ! farcull_install "${missing[@]}" >>"$log" 2>&1; then
-      # The first messages name the causes, such as a full disk. The last ones only follow from them.
+      # The first messages name the causes, such as a full disk. Later messages are only consequences.
       awk '/^[WE]:/ && !seen[$0]++ && ++n <= 8' "$log" >&2
       printf '%s\n' "setup: installing failed twice (apt's output: build/setup.log). By hand:" \
         "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
@@ -120,8 +119,8 @@ farcull_jobs() {
   jobs=$cores
   if [[ -r /proc/meminfo ]]; then
     bytes=$(awk '/^MemAvailable:/ { printf "%.0f", $2 * 1024 }' /proc/meminfo)
-    # In a container meminfo is that of the host. The limit is that of the control group, in
-    # version 2 or version 1.
+    # In a container, meminfo describes the host. The container's limit is in the files of control groups,
+    # version 2 or 1.
     for file in /sys/fs/cgroup/memory.max /sys/fs/cgroup/memory/memory.limit_in_bytes; do
       limit=$(cat "$file" 2>/dev/null) || continue
       if [[ $limit =~ ^[0-9]+$ ]] && ((limit < bytes)); then bytes=$limit; fi
@@ -131,7 +130,7 @@ farcull_jobs() {
   printf '%s\n' $((jobs > 1 ? jobs : 1))
 }
 
-# Configures build/ as Release with the tests, unless that was done before. CMake itself notices a
+# Configures build/ as Release with the tests, unless build/ is configured so. CMake itself notices a
 # CMakeLists.txt that changed.
 farcull_configure() {
   local build=$farcull_root/build
@@ -197,8 +196,8 @@ farcull_make() {
   fi
 }
 
-# farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named.
-# It prints one line if there is nothing to do.
+# farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named. If
+# there is nothing to do, it prints one line.
 farcull_build() {
   if [[ -n ${FARCULL_BUILT-} ]]; then return 0; fi
   local started=$SECONDS steps
@@ -235,7 +234,8 @@ farcull_build_beside() {
 }
 
 # farcull_keep_report NAME TITLE REPORT [CALL]: copies the page of a report to docs/results/NAME.md, with the
-# figures, pictures and tables that it shows or links. Removes such files that no page there shows or links.
+# figures, pictures and tables that it shows or links. Then removes figures, pictures and tables that no
+# page in docs/results shows or links.
 farcull_keep_report() {
   local results=$farcull_root/docs/results file
   mkdir -p "$results"/{figures,pictures,tables}

@@ -25,12 +25,12 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 
 // ---- rounding outward ----
 
-// A float at or above x, at most two floats above the least such float. x + |x| 2^-24 is at least half a unit in the last
-// place above x, and rounding to nearest takes back at most that. kFitHalfUlp also covers the rounding of these doubles,
-// and kFitSubnormal covers subnormal floats.
+// Returns a float at or above x, at most two floats above the least such float. x + |x| 2^-24 is at least half a unit
+// in the last place above x, and rounding to nearest lowers it by at most half a unit. kFitHalfUlp also covers the
+// rounding of these doubles, and kFitSubnormal covers subnormal floats.
 FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
-// A float at or below z - radius, and one at or above z + radius, despite the rounding errors of these functions.
+// fit_below() returns a float at or below z - radius. fit_above() returns a float at or above z + radius.
 FAR_KERNEL double fit_below(double z, double radius) {
   return fit_down(z - radius - kFitDepth * (abs(z) + radius));
 }
@@ -38,7 +38,7 @@ FAR_KERNEL double fit_above(double z, double radius) {
   return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
-// depths[0]: a float depth that is before every point of the fattened primitive; depths[1]: one that is behind every point.
+// Sets depths[0] to a float before every point of the fattened primitive, and depths[1] to a float behind every point.
 FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* depths) {
   double lowest = p[0].z;
   double highest = p[0].z;
@@ -52,10 +52,10 @@ FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* dep
 
 // ---- the proxy's rectangle ----
 
-// A rectangle inside |x| <= bound_x, |y| <= bound_y that contains the image of the points fattened by a disc: four corners
-// x, y, counterclockwise. It lies along the longest image of an edge if that fits (tight for slivers, fair for all else);
-// else it is aligned with the axes and cut off. Corners are rounded to the nearest float, which the budget's term "input"
-// covers.
+// Fits a rectangle inside |x| <= bound_x, |y| <= bound_y to the image of the points fattened by a disc. Its four
+// corners x, y are counterclockwise. It lies along the longest image of an edge if it then fits; this is tight for
+// slivers. Otherwise it is aligned with the axes and cut off at the bounds. Corners are rounded to the nearest float;
+// the error budget has a term "input" for this.
 FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double bound_x, double bound_y, double* corners) {
   double ux = 1.0;
   double uy = 0.0;
@@ -116,8 +116,8 @@ FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double b
 
 // ---- the oriented box ----
 
-// Directions of the box: the longest edge, the farthest point's distance from it, and their normal. Any directions are sound,
-// since the extents are measured afterwards; these make the box tight.
+// Chooses the box's directions: the longest edge, the perpendicular from it to the farthest point, and their normal.
+// Any directions are sound, since the extents are measured afterwards; these directions make the box tight.
 FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   dvec3 along = {1.0, 0.0, 0.0};
   dvec3 base = p[0];
@@ -142,7 +142,7 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
     across = fit_choose(farther, off, across);
     farthest2 = FAR_SELECT(farther, distance2, farthest2);
   }
-  // For a needle or a point any direction across is right: the axis farthest from the edge gives one.
+  // A needle or a point allows any direction across. The axis with the smallest component of `along` gives one.
   const FAR_BOOL thin = farthest2 <= max(0x1p-80 * longest2, 1e-200);
   const double ax = abs(along.x);
   const double ay = abs(along.y);
@@ -158,7 +158,7 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   rows[2] = fit_cross(along, across);
 }
 
-// The box as obb.glsl reads it: solid[5][4]; all numbers are floats.
+// Sets `solid` to the box as obb.glsl reads it: 5 x 4 numbers, all of them floats.
 FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid) {
   dvec3 rows[3];
   fit_directions(p, count, rows);
@@ -189,8 +189,8 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
       reach = max(reach, abs(fit_dot(n, d)));
       size = max(size, (abs(n.x) * abs(d.x) + abs(n.y) * abs(d.y)) + abs(n.z) * abs(d.z));
     }
-    // A difference, a product and two sums: under 5 * 2^-53 of `size`. |n| <= (1 + |n|^2) / 2, which needs no root. kFitBox
-    // is beyond the rounding of either.
+    // A difference, a product and two sums give `reach` an error under 5 * 2^-53 of `size`. |n| <= (1 + |n|^2) / 2,
+    // which needs no root. kFitBox is larger than the relative rounding errors of `reach` and of `length`.
     const double length = (0.5 + 0.5 * fit_dot(n, n)) * (1.0 + kFitBox);
     solid[4 * i + 4] = n.x;
     solid[4 * i + 5] = n.y;
@@ -205,8 +205,8 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
 
 // ---- the exact offset ----
 
-// The triangle a, b, c fattened by a ball as minkowski.glsl reads it: solid[5][4]; all numbers are floats. Its corners are
-// floats relative to a float centre, and its radius grows by the largest of their displacements.
+// Sets `solid` to the triangle p fattened by a ball, as minkowski.glsl reads it: 5 x 4 numbers, all of them floats. The
+// corners are rounded relative to a float centre, so the radius grows by the largest displacement of a corner.
 FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
   const dvec3 lo = {min(min(p[0].x, p[1].x), p[2].x), min(min(p[0].y, p[1].y), p[2].y), min(min(p[0].z, p[1].z), p[2].z)};
   const dvec3 hi = {max(max(p[0].x, p[1].x), p[2].x), max(max(p[0].y, p[1].y), p[2].y), max(max(p[0].z, p[1].z), p[2].z)};
@@ -231,7 +231,8 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
     solid[4 * i + 6] = v.z;
     solid[4 * i + 7] = 0.0;
   }
-  // The subtraction rounds too, by 2^-53 of |d| per axis: the second term covers that. The third covers components below
+  // The second term covers the rounding of the subtraction, 2^-53 of |d| per axis. The third term covers components
+  // below
   // 2^-511, whose squares are less than a normal double.
   const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
   solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));

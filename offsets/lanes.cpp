@@ -1,5 +1,4 @@
-// Compiles the kernels of obb.glsl and minkowski.glsl, and fit.inl, for the lanes of this
-// processor.
+// Compiles obb.glsl, minkowski.glsl and fit.inl for the vector lanes of this processor.
 #include <array>
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,5 @@
-// The offsets' kernels on the lanes of this processor: SolidProgram::draw_native and
-// lines_native, and Fattener::fatten_inside.
+// Functions of the offsets for the vector lanes of this processor: SolidProgram::draw_native,
+// SolidProgram::lines_native and Fattener::fatten_inside.
 #pragma once
 
 #include "core/canvas/fatten.h"

@@ -29,7 +29,8 @@ FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   return extent;
 }
 
-// Cuts [lo, hi] with the solid's halfspace of normal n; false: the line misses it. Unused: normals far from unit length.
+// Cuts [lo, hi] with the solid's halfspace of normal n. Returns false if the line misses the halfspace. A normal far
+// from unit length cuts nothing.
 FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach, FAR_INOUT(float) lo,
                    FAR_INOUT(float) hi) {
   float squared = n.x * n.x + n.y * n.y + n.z * n.z;
@@ -42,8 +43,8 @@ FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v
   return !usable || hit;
 }
 
-// The first (sign -1) or last (sign 1) contact of the line with the capsule about the edge a, b. If it is before (after)
-// all contacts so far, its normal replaces n, and its z replaces n.w.
+// Finds the line's first contact (sign -1) or last contact (sign 1) with the capsule about the edge a, b. If it is
+// farther out than the contact in n, its normal replaces n, and its z replaces n.w.
 FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -75,7 +76,8 @@ FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECIS
   n.w = FAR_SELECT(beyond, z, n.w);
 }
 
-// Sets n to the image direction from edge a, b to the pixel centre, and n.w to their squared distance, if less than n.w.
+// If the squared distance of edge a, b from the pixel centre in the image is less than n.w, it replaces n.w, and the
+// direction from the edge to the pixel centre replaces n.
 FAR_KERNEL void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -107,7 +109,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   FAR_PRECISE float above = abs(exit - mz);
   FAR_PRECISE float reach = max(below, above) * kUp;
 
-  // The shifted triangles: both sides of the plane.
+  // Cuts with the planes of the two shifted triangles.
   float ux = s2.x - s1.x;
   float uy = s2.y - s1.y;
   float uz = s2.z - s1.z;
@@ -132,7 +134,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   plane.z = -plane.z;
   hit = far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit) && hit;
 
-  // Pixels beside the triangle's image: the direction from it in the image.
+  // Cuts pixels beside the triangle's image: the normal is the direction from the image to the pixel centre.
   FAR_PRECISE vec4 aside = s4;
   aside.x = 0.0f;
   aside.y = 0.0f;
@@ -145,7 +147,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   aside.y = FAR_FIXED(aside.y);
   hit = far_touch(d, mz, aside, s1, s2, s3, reach, entry, exit) && hit;
 
-  // The spheres and cylinders, first and last contact.
+  // Cuts at the first and the last contact with the spheres and cylinders.
   FAR_PRECISE vec4 first = s4;
   first.x = 0.0f;
   first.y = 0.0f;

@@ -3,7 +3,8 @@
 //
 // The solid: three slabs |a.x (x - m.x) + a.y (y - m.y) + a.z (z - m.z)| <= h, cut by zlo <= z <= zhi.
 //   s0 = (m, zlo), s1 = (a0, h0), s2 = (a1, h1), s3 = (a2, h2), s4 = (zhi, -, -, -)
-// |a| <= 2 per component, so a slab's normal need be neither unit nor orthogonal: the box is what these floats say it is.
+// Each component of a normal is at most 2 in magnitude. These floats define the box: its normals may have other lengths
+// than 1 and other angles than 90 degrees.
 
 FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
                     FAR_OUT(float) exit) {

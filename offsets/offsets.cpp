@@ -1,5 +1,5 @@
-// Compiles the fits for scalars. Then defines, for each offset, its kernel as scalar C++ and on the
-// worst device, and its fatteners.
+// Compiles fit.inl for scalars. Then defines each offset: its kernel with floats, its kernel with
+// the number type Worst, and its fatteners.
 #include "offsets/offsets.h"
 
 #include <algorithm>
@@ -102,7 +102,7 @@ void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, 
       {proxy_rectangle(patch.points(), radius, bounds), obb_of(patch.points(), radius)});
 }
 
-// The twelve triangles of the closed box. Corners are rounded to nearest: this path gives no
+// Draws the closed box as twelve triangles. Corners are rounded to nearest, so this path gives no
 // guarantee.
 void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawables& out) {
   const Solid box = obb_of(patch.points(), radius);
@@ -172,8 +172,9 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// The normals that the worst device chooses may give a wider interval than those of this machine.
-// GLSL allows this machine's floats too, so the narrower of the two bounds is taken at each end.
+// At each end takes the narrower of two bounds: with this machine's floats, and with the number
+// type Worst. GLSL permits the rounding of both. With Worst alone, other normals may be chosen, and
+// the interval may be wider.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

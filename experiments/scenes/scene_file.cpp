@@ -24,8 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
-// Linux opens no file by a longer path (PATH_MAX), for which std::filesystem::path would need much
-// memory.
+// Linux opens no file with a longer path (PATH_MAX).
 constexpr std::size_t kMaxPathBytes = 4096;
 
 // Iterates over the characters of a text, and counts its lines.
@@ -37,7 +36,7 @@ class Reading {
   using pointer = const char*;
   using reference = const char&;
 
-  // line: increased at each newline.
+  // *line is increased at each newline.
   Reading(const char* at, long* line) : at_(at), line_(line) {}
   reference operator*() const { return *at_; }
   Reading& operator++() {
@@ -51,7 +50,7 @@ class Reading {
   long* line_;
 };
 
-// The lines of the keys "mesh" in "objects", and of the pairs in "ignore".
+// The line numbers of the keys "mesh" in "objects" and of the pairs in "ignore".
 struct Lines {
   std::vector<long> meshes, ignored;
 };
@@ -60,7 +59,7 @@ struct Lines {
 // error, a key that occurs twice, and Lines.
 class Syntax : public nlohmann::json_sax<json> {
  public:
-  // line: of the character that was read last.
+  // line: the line of the character that was read last.
   explicit Syntax(const long& line) : line_(line) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -99,7 +98,7 @@ class Syntax : public nlohmann::json_sax<json> {
   }
 
   std::string twice;   // a key that occurs twice in one object
-  std::size_t at = 0;  // bytes read when the error was found, the offending one included
+  std::size_t at = 0;  // bytes read when the error was found
   std::string reason;
   Lines lines;
 
@@ -107,17 +106,16 @@ class Syntax : public nlohmann::json_sax<json> {
   const long& line_;
   std::vector<std::set<std::string>> keys_;
   int arrays_ = 0;    // number of open arrays
-  std::string last_;  // the last key of the outermost object
+  std::string last_;  // the key of the outermost object that was read last
 };
 
-// The path of a mesh, whose name is relative to the scene file.
+// Returns the path of a mesh whose name is relative to the scene file.
 std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
-// Reads the values of a scene file. A function that takes a value and its place in the file, as in
-// objects[1].scale, throws Error naming both the file and the place if the value is not of that
-// type.
+// Reads the values of a scene file. Many functions take a value and its place in the file, such as
+// objects[1].scale. They throw Error naming the file and the place if the value has a wrong type.
 class SceneFile {
  public:
   SceneFile(std::string path, Lines lines, MeshCache& meshes)
@@ -141,8 +139,8 @@ class SceneFile {
     return builder;
   }
 
-  // The pairs of ignored objects. Precondition: the scene has the objects of the file; it needs
-  // only their names.
+  // Returns the pairs of ignored objects. Precondition: `scene` has the objects of the file; names
+  // are enough.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
                                        UnknownName lacking = UnknownName::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
@@ -313,7 +311,7 @@ class SceneFile {
     return out;
   }
 
-  // The upper three rows of a matrix of 4 x 4 numbers, row by row.
+  // Returns the upper three rows of a 4 x 4 matrix.
   std::array<std::array<double, 4>, 3> matrix(const json& value, const std::string& place) const {
     const std::string form =
         "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
@@ -382,11 +380,10 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
                                     const TakePart& take) {
-  std::size_t bytes =
-      0;  // of the parts since the cache was emptied; its meshes have at most as many
+  std::size_t bytes = 0;  // of the parts since the cache was emptied
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
-  Scene names;  // has the names of all objects of the whole scene, and nothing else
+  Scene names;  // has only the names of all objects
   SceneFile reader(path, file.lines, meshes);
   reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
@@ -404,8 +401,8 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// The names of objects: that of each file without its extension, with its folder if another file
-// has the same name.
+// Returns the names of objects. Each is the name of a file without its extension; the folder is
+// added if another file has the same name.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   std::map<std::string, std::set<std::string>> called;  // the paths, by the name without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);
@@ -419,8 +416,8 @@ std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   return out;
 }
 
-// A scene of mesh files. Checks all extensions first, so that a bad last argument is refused before
-// minutes of reading. Calls added() after each file.
+// Builds a scene of mesh files. First checks all extensions, so that a bad argument is refused
+// before minutes of reading. Calls added() after each file.
 SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes,
                              const std::function<void(SceneBuilder&)>& added = {}) {
   for (const std::string& path : paths) {

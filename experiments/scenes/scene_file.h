@@ -1,5 +1,5 @@
-// Makes a scene from command-line arguments: mesh files, a built-in scene, or a scene file; as a
-// whole, or part by part for callers that cannot hold all of it.
+// Makes a scene from command-line arguments that name mesh files, a built-in scene or a scene file.
+// stream_scene() gives it part by part, for callers whose memory cannot hold the scene.
 #pragma once
 
 #include <initializer_list>
@@ -10,45 +10,47 @@
 
 namespace farcull {
 
-// Objects that are not tested against each other, by the names on the command line and in files
-// (ignored.cpp).
+// Pairs of objects that are not tested against each other. The command line and files give them by
+// names (ignored.cpp).
 
-/// How a name that no object has is treated. It is passed over after the first frame, since objects
-/// may appear and disappear.
+/// How a name that no object has is treated. After the first frame such names are passed over,
+/// since objects may appear and disappear.
 enum class UnknownName { refused, passed_over };
 
-/// The pairs of an object that the pattern `first` matches and a different object that `second`
-/// matches. A * in a pattern stands for any characters. Throws Error if a pattern is the name of an
-/// object and matches others too; and unless `lacking` is passed_over, if a pattern matches no
-/// object, or if both match the same single object. Errors name `where` and `line`, and call the
-/// pair `what`.
+/// Returns the pairs of an object that the pattern `first` matches and a different object that the
+/// pattern `second` matches. A * in a pattern stands for any characters. Throws Error if
+/// - a pattern is the name of an object, but matches more objects;
+/// - a pattern matches no object, unless `lacking` is passed_over;
+/// - both patterns match the same single object, unless `lacking` is passed_over.
+/// Errors name `where` and `line`, and call the pair `what`.
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
                                       const std::string& what, long line = 0,
                                       UnknownName lacking = UnknownName::refused);
 
-/// Two groups of objects by their names.
+/// Two groups of objects, given by patterns for their names.
 struct IgnoredNames {
   std::string text;   // such as "link*:gripper"; * stands for any characters
-  std::string where;  // --ignore, or the file
+  std::string where;  // the option or the file with the text
   long line = 0;      // line of the file, from 1; 0 for --ignore
 };
 
-/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming the option if a pair is
-/// empty. Here and in files, \ before a comma, colon or * makes it a character of the name.
+/// Reads a list of pairs such as "a:b,link*:gripper". Throws Error naming the option if a pair is
+/// empty. In lists and in files, a comma, colon or * after a backslash is a character of the name.
 std::vector<IgnoredNames> parse_ignored(const std::string& list,
                                         const std::string& option = "--ignore");
-/// The pairs of a text file, one per line. Empty lines, lines that begin with # and a byte order
-/// mark are passed over. Throws Error naming the file if it cannot be read or names no pair.
+/// Reads the pairs of a text file, one per line. Skips empty lines, lines that begin with #, and a
+/// byte order mark. Throws Error naming the file if it cannot be read or names no pair.
 std::vector<IgnoredNames> read_ignored(const std::string& path);
-/// The pairs of a list and of a file, as --ignore and --ignore-file give them; either may be empty.
+/// Returns the pairs of a list (--ignore) and of a file (--ignore-file). Each argument may be
+/// empty.
 std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
                                         const std::optional<std::string>& file);
 
-/// The pairs of an object of the first group and a different object of the second, in_order(). A
-/// name may hold colons: each colon is tried as the one between the groups. Throws Error naming
-/// `where` and the line if a text has no colon, if objects match both groups at two of its colons,
-/// and as pairs_between() does.
+/// Returns the pairs of an object of the first group and a different object of the second group, as
+/// in_order() gives them. A name may hold colons, so each colon of a text is tried as the one
+/// between the groups. Throws Error naming `where` and the line if a text has no colon, or if
+/// objects match both groups at two of its colons. Throws Error as pairs_between() does.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         UnknownName lacking = UnknownName::refused);
 
@@ -67,28 +69,30 @@ struct SceneArguments {
   std::vector<std::string> words() const;
 };
 
-/// The scene that the arguments name. Their names are one of
-/// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz). Each is an object with the
-///   name of its file without extension, and with its folder if another file has the same name;
+/// Loads the scene that the arguments name. Their `names` are one of
+/// - one or more mesh files (.obj, .off, .ply or .stl, perhaps with .gz after it). Each file is an
+/// object. It has the name of its file without extension. The folder is added if another file has
+/// the same name;
 /// - one built-in scene, perhaps with numbers and suffixes (builtin/scenes.h);
 /// - one scene file, JSON (docs/scenes.md).
 /// A mesh that is named several times is read once. If meshes are welded, the name of the scene
 /// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error if
-/// an argument cannot be read or is not of this form. The Error names the file; in a scene file
-/// also the line, or the place of a wrong value, such as objects[1].rotate.axis.
+/// an argument cannot be read or is not of this form. The Error names the file. For a scene file it
+/// adds the line, or the place of a wrong value such as objects[1].rotate.axis.
 Scene load_scene(const SceneArguments& arguments);
 /// Throws Error if `weld` or `format` is given, but no named mesh can be affected by it.
 void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
-/// ignored_objects().
+/// ignored_objects() does.
 void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking);
-/// load_scene() that reads meshes through the cache `meshes`, which keeps them.
+/// Does the same as load_scene() above, but reads meshes through the cache `meshes`, which keeps
+/// them.
 Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 
-/// Whether load_scene() treats the name as that of a scene file.
+/// True if load_scene() treats the name as that of a scene file.
 bool is_scene_file(const std::string& name);
-/// The paths of the meshes that a scene file names, each as often as it is named. If the file
-/// cannot be read or is no scene file, returns the paths that were found.
+/// Returns the paths of the meshes that a scene file names. A path that is named twice is returned
+/// twice. If the file cannot be read or is no scene file, returns the paths that were found.
 std::vector<std::string> meshes_of_scene_file(const std::string& path);
 
 /// load_scene() for the text of a scene file. `path` is named in errors, and mesh paths are
@@ -99,30 +103,30 @@ struct SceneFileObject {
   std::string name, mesh;
   bool self = false;
 };
-/// The text of a scene file; ignored: pairs of names.
+/// Returns the text of a scene file. ignored: pairs of names of objects.
 std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
                             const std::vector<std::pair<std::string, std::string>>& ignored);
 
-/// Throws Error if `name` is neither a built-in scene for parse_scene_name() nor a file, so that
-/// load_scene({name}) would fail. Does not look for files of a name with a frame's number (%d).
+/// Throws Error if `name` is neither a built-in scene for parse_scene_name() nor a file. Accepts
+/// each name with a %, since it stands for the files of several frames (%d).
 void require_known(const std::string& name);
 
-/// Receives a part of a scene: some consecutive whole objects, as a valid scene with the name of
-/// the whole scene. May change the part.
+/// Receives a part of a scene: some consecutive objects, as a valid scene with the name of the
+/// whole scene. The function may change the part.
 using TakePart = std::function<void(Scene& part)>;
 
-/// Calls take() with one part after the other. Together they are load_scene(arguments): the same
-/// objects, names, triangles and doubles in the same order; only the indices of vertices start at 0
-/// in each part. A part is a mesh file, an object of a scene file, or some objects of the built-in
-/// scene `field`; any other built-in scene is a single part. Memory: the largest part with its
-/// file, up to 256 MiB of meshes that a scene file may name again, and the names of objects.
-/// Returns the pairs of objects that the scene file ignores, in the numbers of the whole scene;
-/// parts ignore none. Throws Error as load_scene() does, perhaps after some parts, and what take()
-/// throws. Precondition: `ignore` is not given.
+/// Calls take() with one part after the other. All parts together have the objects, names,
+/// triangles and doubles of load_scene(arguments), in the same order. Only the indices of vertices
+/// start at 0 in each part. A part is a mesh file, an object of a scene file, or some objects of
+/// the built-in scene `field`; any other built-in scene is a single part. Memory: the largest part
+/// with its file, up to 256 MiB of meshes that a scene file may name again, and the names of
+/// objects. Returns the pairs of objects that the scene file ignores, by their numbers in the whole
+/// scene; the parts have no ignored pairs. Throws Error as load_scene() does, perhaps after some
+/// parts. Passes on what take() throws. Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
 
-// Scenes as files (write_scene.cpp): meshes with 17 significant digits, so that every double is
-// read back unchanged, and the scene file that puts them together again.
+// Scenes as files (write_scene.cpp): a mesh for each object, and a scene file that names the
+// meshes. Numbers have 17 significant digits, so that every double is read back unchanged.
 
 /// The files that one call has written.
 struct WrittenScene {
@@ -131,11 +135,12 @@ struct WrittenScene {
   std::uint64_t bytes = 0;
 };
 
-/// Writes each object as NAME.off, with the vertices that it uses, and then scene.json, whose scene
-/// has the same scene_hash(). NAME is the object's name, in which everything but letters, digits,
-/// '.' and '-' is replaced; a number is added if two names are equal. Creates the last part of
-/// `folder` if it does not exist; replaces existing files. If the system refuses a path, removes
-/// the new files and throws Error naming the path. Precondition: every object has a triangle.
+/// Writes each object as NAME.off, with the vertices that the object uses. Then writes scene.json;
+/// loading it gives a scene with the same scene_hash(). NAME is the object's name, in which
+/// everything but letters, digits, '.' and '-' is replaced. A number is added if two names are
+/// equal. Creates the last part of `folder` if it does not exist; replaces existing files. If the
+/// system refuses a path, removes the new files and throws Error naming the path. Precondition:
+/// every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

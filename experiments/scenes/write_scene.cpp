@@ -63,7 +63,7 @@ class Folder {
   WrittenScene written_;
 };
 
-// For each object, the name of its file without an ending; no two are equal.
+// Returns for each object the name of its file without an ending. No two names are equal.
 std::vector<std::string> file_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -90,7 +90,7 @@ MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
   return parts.take();
 }
 
-// The pairs of ignored objects, by the names that a scene file gives them.
+// Returns the pairs of ignored objects by name. Throws Error if two names select other pairs.
 std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const ObjectPair& pair : scene.ignored) {

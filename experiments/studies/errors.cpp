@@ -1,8 +1,8 @@
-// The study "headline" has the methods of the first figure. "accuracy" counts what every method
-// misses at each number of pixels and with each form of CULLIDE; "error-time" shows misses against
-// time, and adds libraries. "stability" asks which methods still find all collisions in extreme
-// scenes. "cloth" runs every frame of a falling cloth, at four stiffnesses, with every pair of
-// triangles accounted for.
+// Studies of missed pairs. "headline" has the methods of the first figure. "accuracy" counts what
+// every method misses at each resolution, and what each form of CULLIDE misses. "error-time" shows
+// misses against time, for methods and libraries. "stability" asks which methods find all
+// collisions in extreme scenes. "cloth" runs every frame of a falling cloth at four stiffnesses,
+// and accounts for every pair of triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ using enum Method;
 
 struct ErrorScene {
   std::string name;
-  bool self = false;   // one object against itself, by S-CULLIDE and boxes
+  bool self = false;   // one object is tested against itself, by S-CULLIDE and boxes
   bool drawn = false;  // drawn at random
-  bool again = false;  // drawn with another seed than the scene's own
+  bool again = false;  // drawn with another seed than the scene's default
 };
 
-// objects: smooth surfaces and scans. drawn: randomly drawn scenes; each is taken with several
-// seeds.
+// objects: smooth surfaces and scans. drawn: randomly drawn scenes, each of which is used with
+// several seeds.
 std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
                                   const std::vector<std::string>& drawn, bool quick) {
   std::vector<ErrorScene> out;
@@ -37,23 +37,23 @@ std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
   return out;
 }
 
-// Scenes whose triangles are small or few: at 4096 px a software device takes minutes for large
-// ones.
+// The triangles of these scenes are small or few. At 4096 px, a software device takes minutes to
+// draw large triangles.
 std::vector<ErrorScene> accuracy_scenes(bool quick) {
   if (quick) return scenes_of({"two-tori", "mannequin-devil"}, {"needles:60"}, quick);
   return scenes_of({"two-tori", "two-spheres", "two-bunnies", "dragon-bunny", "mannequin-devil"},
                    {"needles:60", "random-soup", "slivers:200:1e6", "field"}, quick);
 }
 
-// For forms of CULLIDE, and for FAR at other radii than the budget's. These have no guarantee, so
-// no view can be skipped, and a run takes up to five times as long.
+// The highest resolution for forms of CULLIDE, and for FAR at other radii than the budget's. These
+// have no guarantee, so no view can be skipped, and a run takes up to five times as long.
 constexpr int kMostOfForms = 1024;  // px
 
-// CULLIDE as published, and with its changes one by one and together. A scene with another seed
-// gets only the published form and the forms that miss little.
+// Forms of CULLIDE: the published form, forms with one change, and forms with several changes. A
+// scene with another seed gets only the published form and the forms that miss little.
 std::vector<CullideForm> forms_of(const ErrorScene& scene) {
   const CullideForm conservative = {.rounds = 1, .conservative = true};
-  const char* const both = "x,-x,y,-y,z,-z";  // directions of each axis
+  const char* const both = "x,-x,y,-y,z,-z";  // both directions of each axis
   if (scene.again) return {kPublishedForm, conservative, kStrictForm};
   std::vector<CullideForm> out = {
       kPublishedForm,
@@ -124,20 +124,21 @@ std::vector<ErrorScene> timed_scenes(bool quick) {
                    {"needles:100", "random-soup", "field"}, quick);
 }
 
-// Libraries followed by exact decisions; and FCL and ODE with their own tests of two triangles.
+// For the first three libraries, exact tests follow. FCL and ODE use their own tests of triangles.
 constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
                                   "fcl-double", "fcl-float", "ode-trimesh"};
 
-// CULLIDE until a round changes nothing, as published, and in two forms that miss less.
+// CULLIDE that ends when a round changes nothing, its published form, and two forms that miss less.
 const std::vector<CullideForm> kForms = {
     {}, kPublishedForm, {.rounds = 1, .conservative = true}, kStrictForm};
 
-// All methods at one resolution.
+// Adds all methods that draw, at one resolution.
 void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution, int repeat) {
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
   if (scene.self) {
-    // S-CULLIDE takes a step per triangle: 2048 px would take as long as all other points together.
+    // S-CULLIDE takes a step per triangle. At 2048 px it would take as long as all other points
+    // together.
     if (resolution > 1024) return;
     for (const CullideForm& form : kForms) add(cullide_point(named, s_cullide, resolution, form));
     return;
@@ -178,7 +179,7 @@ PointResult measure_timed(const Point& point, MeasurementContext& lab) {
   return out;
 }
 
-// Two scans, and a crowd of objects that are drawn at random.
+// The scenes are two scans and a crowd of randomly drawn objects.
 std::vector<Point> headline_grid(const GridChoice& choice) {
   constexpr int kResolution = 512;  // px
   std::vector<Point> out;
@@ -214,8 +215,8 @@ void add_against_itself(std::vector<Point>& out, const PointScene& scene, int re
               plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
-// Each family goes from a harmless value to its extreme, with more values where CULLIDE begins to
-// fail, or, for offset and scale, where floats begin to fail.
+// The values of each family go from a harmless one to an extreme. There are more values where
+// CULLIDE begins to fail. For offset and scale there are more values where floats begin to fail.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;
@@ -227,7 +228,7 @@ void add_contacts(std::vector<Point>& out, bool quick) {
       {"slivers", ratios},
       {"mixed", ratios},
       {"edge-on", ratios},
-      // 3e-14 px is an ulp of the coordinates.
+      // 3e-14 px is a unit in the last place of the coordinates.
       {"overlap", {"2e0", "1e0", "8e-1", "6e-1", "3e-1", "2e-1", "1e-1", "1e-2", "3e-14", "0"}},
       {"gap", {"1e0", "1e-2", "1e-6", "3e-14"}},
       // A step of the depth buffer is 3e-5 px.
@@ -304,7 +305,7 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
   return out;
 }
 
-// The value of a note of the simulation. Throws std::logic_error if there is none of that name.
+// Returns the value of a note of the simulation. Throws std::logic_error if no note has that name.
 double note(const FrameNotes& notes, const std::string& name) {
   for (const auto& [known, value] : notes.values) {
     if (known == name) return value;

@@ -1,8 +1,8 @@
 // Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
-// bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
-// "precision" tests the lemmas for each format of the depth buffer and each source of depth.
-// "radius" tests them for each radius, and counts the pairs that FAR misses, also on randomly
-// placed patches.
+// bound what a triangle may touch in a pixel. There the CPU counts the pixel centres that proxies
+// cover. "precision" tests the lemmas for each format of the depth buffer and each source of depth.
+// "radius" tests the lemmas for each radius, and counts the pairs that FAR misses in scenes and on
+// randomly placed patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 // ---- "offsets" ----
 
-// The interval of x in which a convex quadrilateral covers the row `y`; empty if from > to.
+// The interval of x in which a convex quadrilateral covers the row `y`. It is empty if from > to.
 struct Span {
   double from = HUGE_VAL, to = -HUGE_VAL;
 };
@@ -47,7 +47,8 @@ Span span_at(const std::array<float, 8>& corners, double y) {
   return out;
 }
 
-// The counts of the elements from .. to - 1. Coordinates of pixel centres are half-integers.
+// Returns the counts of the elements `from` to `to` - 1. Coordinates of pixel centres are
+// half-integers.
 Fragments count_in(const Drawables& drawables, const SolidProgram& program, const Window& window,
                    std::size_t from, std::size_t to) {
   Fragments out;
@@ -108,8 +109,8 @@ PointResult measure_offsets(const Point& of, MeasurementContext& lab) {
 
 // ---- "precision" and "radius" ----
 
-// The native canvas with a depth buffer of 16-bit fixed point; it does not offer run(). It rounds
-// the nearest or farthest depth. Since rounding is monotone, that is the nearest or farthest of the
+// The native canvas with a depth buffer of 16-bit fixed point, without run(). The class rounds the
+// nearest or farthest depth. Rounding is monotone, so the result is the nearest or farthest of the
 // rounded depths.
 class CoarseCanvas final : public Canvas {
  public:
@@ -151,7 +152,8 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel. Triangles of the others are too small.
+// Generators of triangles whose depth varies inside a pixel. Triangles of other generators are too
+// small.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
@@ -159,9 +161,9 @@ constexpr const char* kGenerators[] = {
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
   // Each side with its border makes a viewport of a power of two. 2^20 px is the largest depth of a
-  // window (core/view/view.h, fit_window). In a window of that depth, a step of a 24-bit buffer is
-  // longer than the chord of the ball at the corner of a pixel; in a depth of 2^13 px, a step of a
-  // 16-bit buffer is.
+  // window (core/view/view.h, fit_window). In a window of depth 2^20 px, a step of a 24-bit buffer
+  // is longer than the chord of the ball at the corner of a pixel. In a window of depth 2^13 px, a
+  // step of a 16-bit buffer is longer than this chord.
   const std::vector<int> sides = choice.quick ? std::vector{508, 1020} : std::vector{508, 4092};
   const std::vector<double> depths =
       choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p13, 0x1p20};
@@ -182,7 +184,8 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
             out.push_back(point);
           }
         };
-        // 0.9 of the radius shows that the points are hard enough to notice a smaller one.
+        // 0.9 of the radius shows that the points are hard enough to detect a radius that is too
+        // small.
         const std::vector<RadiusRule> computed = {parse_radius("0.9"), kPublishedRadius,
                                                   kBudgetRadius};
         for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
@@ -196,7 +199,8 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
   return out;
 }
 
-// Factors on the budget radius from 0 to 1.1, more of them near 1, and the published radius.
+// Returns the published radius, and factors of the budget radius from 0 to 1.1. There are more
+// factors near 1.
 std::vector<RadiusRule> radii(bool quick) {
   std::vector<double> factors;
   const int steps = quick ? 11 : 22;
@@ -207,16 +211,17 @@ std::vector<RadiusRule> radii(bool quick) {
     std::ranges::sort(factors);
   }
   std::vector<RadiusRule> out;
-  // Rounded as they are written, so that a key that is read back gives the same number.
+  // Factors are rounded as they are written, so that reading a key gives the same number.
   for (const double factor : factors) out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
   return out;
 }
 
-// Pairs at the published radius for each number of subpixel bits, with the side at which most pairs
-// are missed. For 8 bits also: without snapping; the budget radius; 0.9 of it, which shows how many
-// pairs are at risk; other sides; twice the stratum, which must give the same rate. The last rows
-// are pairs that are drawn anywhere, with few bits, since only then enough of them are missed.
+// Rows for pairs. For each number of subpixel bits there is a row with the published radius and the
+// side at which most pairs are missed. Rows for 8 bits vary this: no snapping; the budget radius;
+// 0.9 of the budget radius, which shows how many pairs are at risk; other sides; a stratum of twice
+// the width, which must give the same rate. The last rows have pairs that are drawn anywhere. They
+// have few bits, since with more bits too few of these pairs are missed.
 constexpr struct {
   const char* radius;
   double side;  // px
@@ -234,8 +239,7 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; with such small sides a missed pair is rarely kept
-                                      // because of another pair nearby
+constexpr double kSmallest = 0x1p-5;  // px; other pairs nearby rarely hide a missed pair
 
 // Four series:
 // (1) With 8 subpixel bits, triangles of each size at the published radius, 10^6 placements in
@@ -268,7 +272,7 @@ std::vector<PlacementPoint> placements(const GridChoice& choice) {
       };
       for (const Size& size : sizes) add(size, kUsualBits, kPublishedRadius, usual_resolution);
       for (const Size& size : sizes) {
-        if (size.side > 4) continue;  // few larger ones fit a window
+        if (size.side > 4) continue;  // few larger triangles fit a window
         const Size fewer = {size.side, std::min<std::uint64_t>(size.placements / 4, 5000)};
         for (const char* factor : {"0.5", "0.7", "0.8", "0.9", "0.95"})
           add(fewer, kUsualBits, parse_radius(factor), usual_resolution);
@@ -384,7 +388,7 @@ PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab) {
   const bool bits24 = point.depth_format == DepthFormat::fixed24;
   PointResult out;
   LemmaCounts counts;
-  // The rule of guaranteed() in method/run.h for runs of FAR.
+  // This is the rule that guaranteed() (method/run.h) has for FAR.
   counts.promises = !fixed && !point.radius.published && point.radius.factor >= 1;
   std::unique_ptr<WorstCanvas> worst;
   std::unique_ptr<CoarseCanvas> coarse;

@@ -1,6 +1,6 @@
 // The study "libraries": wrong answers of other libraries, textbook tests and our own methods on a
 // labelled suite. A point is a contestant and a kind of question. experiments/suite/ask.py asks the
-// contestant's program (docs/ask.md) and counts; here its counts become a row.
+// contestant's program (docs/ask.md) and counts its errors. This file turns the counts into a row.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -27,15 +27,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Contestants of one program that answer the same questions.
+/// Contestants that one program implements and that answer the same questions.
 struct KnownContestants {
-  std::vector<std::string> names;  // as their cards say
-  std::string program;             // farcull_contestant_PROGRAM
-  std::string package;             // the package that the program needs; empty: none
-  std::string answers;             // the questions that the study asks them, such as "pair mesh"
+  std::vector<std::string> names;
+  std::string program;  // the program is farcull_contestant_PROGRAM
+  std::string package;  // the package that the program needs; empty: none
+  std::string answers;  // the questions that the study asks, such as "pair mesh"
 };
 
-/// In the order of tables, the same in every build.
+/// Returns all contestants in the order of tables. The order is the same in every build.
 const std::vector<KnownContestants>& known_contestants() {
   const std::string npm = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
   static const std::vector<KnownContestants> all = {
@@ -84,9 +84,9 @@ const KnownContestants& known_contestant(const std::string& name) {
               fmt::format("choose of {}", fmt::join(names, ", ")));
 }
 
-/// The command line of the contestant's program. The program is in the folder that the variable
-/// FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program. Empty: it was
-/// not built.
+/// Returns the command line of the contestant's program. The program is in the folder that the
+/// variable FARCULL_CONTESTANTS names, else in the folder `contestants` beside this program.
+/// Returns "" if the program was not built.
 std::string command_of(const std::string& name) {
   const char* const named = std::getenv("FARCULL_CONTESTANTS");
   std::error_code error;
@@ -99,7 +99,7 @@ std::string command_of(const std::string& name) {
 }
 
 /// Runs `ask.py --json` with these options on the program that `command` starts, and returns what
-/// it prints. Throws Error with the reason if it fails.
+/// ask.py prints. Throws Error with the reason if ask.py fails.
 Json ask_program(const std::string& command, const std::vector<std::string>& options) {
   std::string line = "exec " + quoted(python());
   for (const char* word : {"-I", "-B", "-c", embedded::ask_py, "--json"})
@@ -121,7 +121,7 @@ Json ask_program(const std::string& command, const std::vector<std::string>& opt
   return out;
 }
 
-/// Points of one question are together.
+/// Returns the points of the study. Points of one question stand together.
 std::vector<Point> grid(const GridChoice& choice) {
   LibraryPoint point{.small = choice.quick, .seed = choice.seed, .suite = choice.suite};
   if (!choice.suite.empty()) point.suite_name = read_suite(choice.suite).sum.substr(0, 8);
@@ -140,8 +140,8 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-/// The folder of the point's suite. If none was given, the suite is made in the folder that the
-/// variable FARCULL_MADE_SUITE names, unless that has it already.
+/// Returns the folder of the point's suite. If the point names none, this is the folder in the
+/// variable FARCULL_MADE_SUITE; the suite is made there unless it exists already.
 std::string folder_of(const LibraryPoint& point) {
   if (!point.suite.empty()) return point.suite;
   const char* const named = std::getenv("FARCULL_MADE_SUITE");
@@ -157,7 +157,7 @@ std::string folder_of(const LibraryPoint& point) {
   return folder;
 }
 
-/// A contestant's library with its version, or why it cannot be asked. Each is asked once.
+/// A contestant's library with its version, or the reason why the contestant cannot be asked.
 struct Asked {
   std::string command = {}, library = {}, missing = {};
 };
@@ -200,7 +200,7 @@ PointResult measure(const Point& at, MeasurementContext& lab) {
   const Asked& asked = ask_card(point.contestant);
   if (!asked.missing.empty()) return {.device = "none", .left_out = asked.missing};
   const bool longer = !point.small && point.question != "pair" && point.question != "distance";
-  // Our own methods read the variable.
+  // Contestants that are methods of farcull read the variable.
   const std::string command = "env FARCULL_CONTEST_DEVICE=" + lab.device() + " " + asked.command;
   const Json found =
       ask_program(command, {"--suite", folder_of(point), "--only", point.question, "--limit",

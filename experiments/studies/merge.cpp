@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr long kMostShards = 100'000;
 constexpr const char* kMeasureAgain = "measure it again as the others were";
 
-// The row's library with its version; empty if the row names none.
+// Returns the row's library with its version, or "" if the row names no library.
 std::string library_of(const Row& row) { return row.measurement.counts.value("library", ""); }
 
 struct Source {
@@ -37,7 +37,7 @@ Source read(const std::string& path) {
   return out;
 }
 
-// The commits of the programs that measured the rows of a study.
+// Returns the commits of the programs that measured the rows of a study.
 std::set<std::string> commits_of(const Source& source, std::size_t study) {
   std::set<std::int64_t> used;
   for (const Row& row : source.studies[study].rows) used.insert(row.run);
@@ -48,7 +48,7 @@ std::set<std::string> commits_of(const Source& source, std::size_t study) {
   return out;
 }
 
-// Refuses two stores whose studies, grids or programs differ.
+// Throws Error if the studies, grids or programs of two stores differ.
 void require_alike(const Source& first, const Source& other) {
   const auto refuse = [&](const std::string& what) {
     throw Error(other.path, what + " than " + first.path, kMeasureAgain);
@@ -72,7 +72,8 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Refuses missing or repeated shards, and points without exactly one whole row.
+// Throws Error if a shard is missing or repeated, or if a point does not have exactly one complete
+// row.
 void require_whole(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     const Declaration& all = sources.front().studies[i].declaration;
@@ -114,8 +115,8 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// If several studies have rows of one point, different shards may have timed them. So all rows get
-// the times of the first one.
+// If several studies have rows of one point, different shards may have timed them. So all rows of
+// the point get the times of its first row.
 void share_times(std::vector<Source>& sources) {
   std::map<PointKey, nlohmann::ordered_json> times;
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
@@ -160,7 +161,7 @@ void require_same_versions(const std::string& path, const StoredStudy& stored, c
     if (!now.empty() && now != at->second)
       reason += fmt::format("{}its rows of {} are of {}, and {} is here now",
                             reason.empty() ? "" : "; ", name, at->second, now);
-    then.erase(at);  // each contestant is asked once
+    then.erase(at);  // each contestant is checked once
   }
   if (!reason.empty()) throw Error(path, reason, "start anew in another folder (--out)");
 }

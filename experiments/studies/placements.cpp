@@ -1,5 +1,6 @@
-// Patches grow over shared vertices from a random triangle. Each placement has a cell: cell (i, j)
-// of n x n is at (i, j, i + j modulo n), so that no two overlap in any of the three axis views.
+// Patches grow over shared vertices from a random triangle. Each placement has a cell. Cell (i, j)
+// of n x n cells is at (i, j, i + j modulo n), so no two cells overlap in any of the three axis
+// views.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -21,8 +22,8 @@ namespace {
 using shapes::Corners;
 using shapes::Random;
 
-/// The native canvas as a device that snaps: rounds corners of proxies to the nearest multiple of
-/// 2^-bits px, as assumption A2 allows (docs/reliability.md).
+/// The native canvas as a device that snaps. It rounds corners of proxies to the nearest multiple
+/// of 2^-bits px, as assumption A2 allows (docs/reliability.md).
 class SnappingCanvas final : public Canvas {
  public:
   SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
@@ -92,10 +93,10 @@ void turn(std::vector<Corners>& patch, Random& random) {
   each_point(patch, [&](Vec3& p) { p = by * p; });
 }
 
-// Cuts a patch of `count` triangles from an object: a random triangle and those nearest to it over
-// shared vertices. If these are too few (soups have no neighbours), other triangles are drawn and
-// moved beside the first. The patch is fitted to the side and turned at random. around: for each
-// vertex, the object's triangles that have it.
+// Cuts a patch of `count` triangles from an object: a random triangle and the triangles nearest to
+// it over shared vertices. If these are too few (soups have no neighbours), other triangles are
+// drawn at random and moved beside the first triangle. The patch is scaled to `side` and turned at
+// random. around: for each vertex, the object's triangles at this vertex.
 std::vector<Corners> cut(const Scene& scene, const Object& object,
                          const std::vector<std::vector<std::uint32_t>>& around, Random& random,
                          std::uint32_t count, double side) {
@@ -116,7 +117,7 @@ std::vector<Corners> cut(const Scene& scene, const Object& object,
     Corners more = corners_of(random.below(object.triangle_count));
     const double size = longest(more);
     if (!(size > 0)) continue;
-    // Scales the triangle to the size of the first one, and moves it near that.
+    // Scales the triangle to the size of the first triangle, and moves it near the first triangle.
     const Vec3 from = mean(more), to = middle + reach * random.in_ball();
     for (Vec3& c : more) c = to + (c - from) * (reach / size);
     out.push_back(more);
@@ -139,17 +140,17 @@ void shift(std::vector<Corners>& patch, const Vec3& by) {
   each_point(patch, [&](Vec3& p) { p += by; });
 }
 
-// Moves the second patch so that a random point of it is at a random point of the first patch.
-// Returns that point.
+// Moves the second patch so that a random point of the second patch is at a random point of the
+// first patch. Returns the common point.
 Vec3 cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Vec3 to = inner(one[random.below(one.size())], random);
   shift(other, to - inner(other[random.below(other.size())], random));
   return to;
 }
 
-// Turns a triangle about an axis. The longest edge of its image, along which its rectangle is drawn
-// (offsets/fit.inl), gets a random direction; the angle between it and a diagonal of the pixels has
-// at least this cosine. Uses no sines, as turn().
+// Turns a triangle about an axis. The longest edge of the triangle's image gets a random direction,
+// whose angle with a diagonal of the pixels has at least this cosine. The triangle's rectangle is
+// drawn along this edge (offsets/fit.inl). Like turn(), the function uses no sines.
 void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random) {
   const int right = (axis + 1) % 3, up = (axis + 2) % 3;
   double x = 0, y = 0, length = 0;
@@ -175,9 +176,9 @@ void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random)
   }
 }
 
-// Reflects and moves the second patch. Its corner farthest from its middle then pokes through a
-// triangle of the first patch, by a random fraction, 2^-20 to 1, of 1 px or of that triangle's
-// longest side if it is shorter.
+// Reflects and moves the second patch, so that its corner farthest from its middle pokes through a
+// triangle of the first patch. The depth is a random fraction, 2^-20 to 1, of the smaller of 1 px
+// and that triangle's longest side.
 void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -223,22 +224,24 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
 // 1. Let n be the unit normal of an edge, at the angle t from a diagonal. Snapping to multiples
 //    of g moves the edge inward by at most g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
 // 2. Let the contact be at q, seen from the nearest corner of the pixels. A triangle's rectangle
-//    reaches at least sqrt(1/2) beyond the contact. So it loses the pixel centre on this diagonal
-//    only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
+//    reaches at least sqrt(1/2) beyond the contact. So the rectangle loses the pixel centre on this
+//    diagonal only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
 // 3. A pair is missed only if each of the four centres around the corner is lost by one of the two
 //    triangles. Suppose that each triangle loses two opposite centres. Then step 2 holds for n and
 //    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. All such pairs of
 //    strips lie in |q.x| + |q.y| < px, where px is the largest value with
 //    px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 for some t.
-// 4. If the triangles share the centres in another way, the sum of their two bounds is positive.
-//    Then an angle is at most sqrt(2) times as large and, from 8 bits on, px at most 1.4 times.
-//    Such misses are in the stratum that is twice as wide; the rates of both strata show how many
-//    there are.
-// 5. One triangle alone does not lose all four centres, to first order in g. Two corners of its
-//    rectangle are at least 2 px apart in x, and the other two in y, also after snapping. If it
-//    lost all four centres, the sum of the four conditions would make one of these distances less.
+// 4. If the triangles lose the centres in another way, the sum of their two bounds is positive.
+// Then an angle is at most sqrt(2) times as large. From 8 bits on, px is at most 1.4 times as
+// large. Such misses are in the stratum of twice the width. The rates of the two strata show how
+// many such misses there are.
+// 5. One triangle alone does not lose all four centres, to first order in g. Even after snapping,
+// two corners of its rectangle are at least 2 px apart in x, and the other two corners in y. If the
+// triangle lost all four centres, the sum of the four conditions would make one of these distances
+// less than 2 px.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
-  // Without snapping, floats round: at the edge of the window to multiples of 2^-25 of its side.
+  // Without snapping, only floats round. At the edge of the window they are multiples of 2^-25 of
+  // the window's side.
   const double grid =
       subpixel_bits > 0 ? std::ldexp(1.0, -subpixel_bits) : std::ldexp(resolution, -25);
   const double reach = 0.5 * (1 + grid);
@@ -263,7 +266,7 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
-    do {  // again if a patch leaves its cell, since it would meet patches of other cells
+    do {  // repeats if a patch leaves its cell, where it would meet other patches
       a = cut(from_, from_.objects[0], around_[0], random, count, point.side);
       b = cut(from_, from_.objects[1], around_[1], random, count, point.side);
       if (point.grazing) {
@@ -292,8 +295,8 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     ++out.placements;
   }
   if (point.pairs) {
-    // Two points that touch at each end make the window reach from -half to half, so that whole
-    // numbers are corners of pixels.
+    // Two points that touch at each end make the window range from -half to half. So corners of
+    // pixels are at whole numbers.
     for (const double end : {-half, half}) {
       for (auto* list : {&one, &other})
         list->push_back({Vec3::Constant(end), Vec3::Constant(end), Vec3::Constant(end)});
@@ -398,7 +401,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     std::vector<std::uint8_t> collides(placed.placements), misses(placed.placements);
     for (const TrianglePair& pair : lab.truth().pairs) {
       const std::uint64_t at = pair.a / (point.pairs ? 1 : kPatchTriangles);
-      if (at >= placed.placements) continue;  // the points at the ends of the window
+      if (at >= placed.placements) continue;  // the pair is of points at the ends of the window
       collides[at] = 1;
       ++counts.colliding;
       if (kept[pair.a] && kept[pair.b]) continue;

@@ -1,4 +1,4 @@
-// Converts typed points to the columns of a store, and to words.
+// Converts points to the columns of a store, and to words.
 #include "experiments/studies/point.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 namespace farcull {
 namespace {
 
-// The words of a column, in the order of the values of its enumeration.
+// The words of a column, in the order of the enumerators of its type.
 constexpr std::array kDepthFormats = {"float32", "fixed24"};
 constexpr std::array kDepthModes = {"fragment", "fixed"};
 
@@ -29,7 +29,7 @@ std::optional<T> choice_of(const std::string& text, const Words& words) {
   return static_cast<T>(at - words.begin());
 }
 
-// The columns `scene` and `frame` of a scene.
+// Returns a key with only the columns that describe a scene.
 PointKey key_of(const PointScene& scene) {
   struct Columns {
     PointKey operator()(const NamedScene& of) const { return {.scene = of.name}; }

@@ -16,7 +16,7 @@
 
 namespace farcull {
 
-/// A scene as on the command line.
+/// A scene, named as on the command line.
 struct NamedScene {
   std::string name;
 };
@@ -26,7 +26,7 @@ struct MotionFrame {
   long frame = 0;
   long frames = 1;  // of the whole motion
 };
-/// A frame of the scene "cloth", named with its numbers; the cloth is not tested against itself.
+/// A frame of the scene "cloth", in which the cloth is not tested against itself.
 struct ClothApart {
   std::string name;
   long frame = 0;
@@ -44,8 +44,8 @@ struct ClusteredScene {
 /// contact_cells.cpp).
 struct ContactCells {
   std::string family;  // slivers, mixed, edge-on, overlap, gap, stack, offset or scale
-  int side = 24;       // cells in a row; there are side * side of them
-  std::string value;   // the number, as in 1e6
+  int side = 24;       // cells in a row; there are side * side cells
+  std::string value;   // the number that goes to an extreme, such as 1e6
 };
 
 using PointScene =
@@ -67,8 +67,8 @@ struct RunPoint {
   std::string offset = {};                       // obb or exact; only for far
   std::optional<RadiusRule> radius = {};         // only for far
   std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
-  std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores it
-  int resolution = 0;                            // px; 0: none, or see mean_pixels
+  std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores a depth
+  int resolution = 0;  // px; 0: the method has none, or mean_pixels chooses it
   /// If not 0, the resolution is the least one at which triangles that can take part cover this
   /// many pixels on average (size_for() in run_point.cpp).
   double mean_pixels = 0;
@@ -86,30 +86,31 @@ struct PeerPoint {
 /// The lemma experiment (lemma/lemma.h) with one generator at one radius.
 struct LemmaPoint {
   std::string generator;     // one of lemma_generators()
-  std::uint64_t points = 0;  // from this generator, at least
-  double depth = 256;        // px, of the window
-  bool worst = false;        // on verify/worst_canvas.h, displacing what is drawn as far as
-                             // rounding in double may; else on the device of the run
+  std::uint64_t points = 0;  // at least this many points are tested
+  double depth = 256;        // depth of the window, px
+  bool worst = false;  // true: drawn on verify/worst_canvas.h, which displaces things as far as
+                       // rounding in double may; false: drawn on the device of the run
   RadiusRule radius = {};
-  DepthMode depth_mode = DepthMode::fragment;  // fixed: the boxes as surfaces
-  /// The samples are what a buffer of this format stores. Empty: what the shader computes (with
-  /// fixed depth, what the device's buffer stores).
+  DepthMode depth_mode = DepthMode::fragment;  // fixed: boxes are drawn as surfaces
+  /// The samples are depths as a buffer of this format stores them. Empty: as the shader computes
+  /// them, or with fixed depth, as the device's buffer stores them.
   std::optional<DepthFormat> depth_format = {};
-  bool coarse = false;  // the samples are what a buffer of 16-bit fixed point stores
-  int side = 0;         // px, of the window; 0: the generator's own
+  bool coarse = false;  // the samples are depths as a buffer of 16-bit fixed point stores them
+  int side = 0;         // side of the window, px; 0: the generator chooses it
   std::uint64_t seed = 1;
 };
 
 /// FAR on many small patches of triangles that are placed into each other at random (run_point.h).
 struct PlacementPoint {
   std::string from;      // built-in scene; patches are cut from its first two objects
-  bool grazing = false;  // a corner of one patch pokes through the other; else they cross
-  bool pairs = false;    // patches of one triangle, which cross
-  int widening = 0;  // of pairs: 0: drawn anywhere; 1, 2 or 4: drawn from a CornerStratum that is
-                     // so many times as wide as the usual one
+  bool grazing = false;  // a corner of one patch pokes through the other; false: patches cross
+  bool pairs = false;    // each patch is one triangle, and the two triangles cross
+  int widening = 0;  // only for pairs; 0: drawn anywhere; 1, 2 or 4: drawn from a CornerStratum of
+                     // this multiple of the usual width
   double side = 1;   // px, mean longest side of a triangle
   std::uint64_t placements = 0;
-  /// Corners of proxies are snapped to 2^-bits px; 0: not, and pairs are drawn on the device.
+  /// Corners of proxies are snapped to multiples of 2^-bits px. 0: they are not snapped, and pairs
+  /// are drawn on the device of the run.
   int subpixel_bits = 0;
   RadiusRule radius = {};
   int resolution = 0;  // px
@@ -120,17 +121,17 @@ struct PlacementPoint {
 struct LibraryPoint {
   std::string contestant = {};
   std::string question = "pair";  // as in docs/ask.md
-  bool small = false;             // of the small suite; else of the full one
+  bool small = false;             // true: of the small suite; false: of the full suite
   std::uint64_t seed = 1;         // of the suite
-  std::string suite = {};         // the folder of a given suite; empty: generated
-  std::string suite_name = {};    // of a given suite: the beginning of its checksum
+  std::string suite = {};         // folder of the suite; empty: a suite is generated
+  std::string suite_name = {};    // only with a folder: the beginning of the suite's checksum
 };
 
 /// The potential neighbours that a method leaves (measure/neighbour_sets.h).
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
-  int resolution = 0;   // of a diagram, in cells; 0: the method has none
+  int resolution = 0;   // of the diagram, in cells; 0: the method has no diagram
   double widening = 1;  // of the reliable diagram; below 1 there is no guarantee
   int repeat = 1;       // see runs_of()
 };
@@ -157,16 +158,17 @@ inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
 /// two points of a grid have the same key.
 struct PointKey {
   std::string scene = {};  // as on the command line, or as key_of() writes it
-  /// As --method with the options of its form ("cullide --rounds 1"), perhaps with the mean size of
-  /// triangles ("@4px"); or a peer; "lemma", "lemma-worst", "lemma-fixed16"; of placements "far",
-  /// "far-snapped-8"; a contestant, perhaps with its question ("cgal-aabb nearest"); of potential
-  /// neighbours "boxes", "trees", "voronoi", "voronoi-reliable".
+  /// The value of --method with the options of its form, as in "cullide --rounds 1", perhaps with
+  /// the mean size of triangles, as in "@4px". For other kinds of points: a peer; "lemma",
+  /// "lemma-worst" or "lemma-fixed16"; "far" or "far-snapped-8" for placements; a contestant,
+  /// perhaps with its question, as in "cgal-aabb nearest"; "boxes", "trees", "voronoi" or
+  /// "voronoi-reliable" for potential neighbours.
   std::string method = {};
   std::string offset = {};  // obb or exact
   std::optional<RadiusRule> radius = {};
   std::optional<DepthFormat> depth_format = {};
   std::optional<DepthMode> depth_mode = {};
-  int resolution = 0;  // px; for "voronoi" and "voronoi-reliable" in cells
+  int resolution = 0;  // in px; in cells for "voronoi" and "voronoi-reliable"
   std::string views = {};
   long frame = -1;
   std::uint64_t seed = 0;
@@ -176,25 +178,26 @@ struct PointKey {
                  seed)
 };
 
-/// A typed column as the store and tables write it, as in "0.9", "float32", "fragment"; "" if it
-/// does not apply.
-std::string column_text(const std::optional<RadiusRule>& radius);  // as --radius
+/// Returns a typed column as the store and tables write it, such as "0.9", "float32" or "fragment".
+/// Returns "" if the column does not apply.
+std::string column_text(const std::optional<RadiusRule>& radius);
 std::string column_text(const std::optional<DepthFormat>& format);
 std::string column_text(const std::optional<DepthMode>& mode);
-/// The inverse for these three types. Throws Error if no value is written as `text`.
+/// Reads what column_text() wrote. Throws Error if no value is written as `text`.
 template <class T>
 std::optional<T> column_of(const std::string& text);
 
-/// In how many rounds a point is timed (run_studies.h).
+/// The number of rounds in which a point is timed (run_studies.h).
 inline constexpr int kRounds = 3;
-/// The runs of the point in all rounds. At most 1: it is run once, for its counts, and not timed.
+/// Returns the number of runs of the point in all rounds together. A point with at most 1 run is
+/// not timed; it is run once, for its counts.
 int runs_of(const Point& point);
 inline bool is_timed(const Point& point) { return runs_of(point) > 1; }
 
 PointKey key_of(const Point& point);
 std::vector<PointKey> keys_of(const std::vector<Point>& points);
 
-/// In words, for progress and errors: "two-bunnies, cullide, 512 px".
+/// Returns the point in words, for progress and errors, such as "two-bunnies, cullide, 512 px".
 std::string describe(const PointKey& key);
 std::string describe(const Point& point);
 
@@ -206,7 +209,7 @@ struct LemmaScene {
 
   std::string name() const;
 };
-/// Precondition: name() wrote the text; std::logic_error otherwise.
+/// Reads what LemmaScene::name() wrote. Throws std::logic_error for any other text.
 LemmaScene parse_lemma_scene(const std::string& text);
 
 // Points that several studies use. They are not timed unless `repeat` is set.
@@ -236,11 +239,11 @@ inline RunPoint cullide_point(PointScene scene, Method method, int resolution,
 
 /// CULLIDE as published: one round.
 inline const CullideForm kPublishedForm = {.rounds = 1};
-/// The form that misses least.
+/// The form of CULLIDE that misses least.
 inline const CullideForm kStrictForm = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
 
-/// A randomly drawn scene with the first `count` of the five seeds that are measured: the scene's
-/// default seed, and 101 to 104.
+/// Returns the names of a randomly drawn scene with the first `count` of five seeds: the scene's
+/// default seed, then 101 to 104.
 inline std::vector<std::string> drawn_scenes(const std::string& name, int count = 5) {
   std::vector<std::string> out = {name};
   for (int i = 1; i < count; ++i) out.push_back(name + "@seed" + std::to_string(100 + i));
@@ -255,7 +258,7 @@ inline RunPoint plain_point(PointScene scene, Method method) {
 inline constexpr RadiusRule kBudgetRadius = {};
 inline constexpr RadiusRule kPublishedRadius = {.published = true};
 
-/// The same point, timed with `repeat` runs, a multiple of kRounds.
+/// Returns the point, timed with `repeat` runs. Precondition: `repeat` is a multiple of kRounds.
 template <class OfPoint>
 OfPoint repeated(OfPoint point, int repeat) {
   point.repeat = repeat;

@@ -1,6 +1,6 @@
 // The study "proximity" measures the size of potential neighbour sets, the nearest neighbours that
 // a grid loses, and the errors and times of libraries' distances. The exact answers of all scenes
-// are kept, since many points share a scene and rounds come back to it.
+// are kept, since many points and several rounds use the same scene.
 //
 // Sud, Govindaraju, Gayle, Kabul and Manocha, Fast Proximity Computation Among Deformable Models
 // using Discrete Voronoi Diagrams, SIGGRAPH 2006.
@@ -31,7 +31,8 @@ struct Exact {
 
 constexpr const char* kReport = "this is a fault of farcull: please report it with the scene";
 
-// Checks that both searches agree. If several objects are equally near, `distances` names one.
+// Throws Error unless `distances` and `nearest` agree. If several objects are equally near,
+// `distances` names one of them.
 void require_alike(const std::string& where, const Exact& exact) {
   for (const PeerDistance& one : exact.distances) {
     if (std::ranges::count(exact.nearest[one.a].objects, one.b) > 0) continue;
@@ -75,11 +76,11 @@ using enum NeighbourMethod;
 
 constexpr int kCellsInMotion = 256;    // cells, for scenes that move
 constexpr int kCountResolution = 128;  // cells, for times against the number of objects
-constexpr int kMostInDiagrams = 400;   // objects in a scene; for diagrams
+constexpr int kMostInDiagrams = 400;   // most objects in a scene for which diagrams are computed
 constexpr int kRuns = 3 * kRounds;     // as in the study "scaling"
-constexpr int kSeeds = 3;              // of clusters
+constexpr int kSeeds = 3;              // of scenes of clusters
 
-// Adds both diagrams at each resolution, and the methods without cells. unwidened: also adds the
+// Adds the two diagrams at each resolution, and the methods without cells. unwidened: adds the
 // reliable diagram with widening 0, which may lose objects.
 void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
@@ -102,7 +103,7 @@ struct RestCase {
   DistanceTask task = DistanceTask::nearest;  // the question for libraries
 };
 
-// Scenes in which not all objects meet.
+// Adds scenes in which not all objects meet.
 void add_scenes_at_rest(bool quick, std::vector<Point>& out) {
   using enum DistanceTask;
   static const std::vector<RestCase> full = {{"crowd"},       {"cylinders", objects},
@@ -131,7 +132,7 @@ void add_motion(bool quick, std::vector<Point>& out) {
   static const std::vector<std::string> full = {"crowd:100", "cylinders:30", "field:4000",
                                                 "tree-leaves:60"};
   static const std::vector<std::string> few = {"crowd:30", "cylinders:8"};
-  // At least six frames, as in the study "efficiency".
+  // At least six frames, for the same reason as in the study "efficiency".
   const long frames = quick ? 6 : 12;
   for (const std::string& name : quick ? few : full) {
     for (long frame = 0; frame < frames; ++frame) {
@@ -142,13 +143,13 @@ void add_motion(bool quick, std::vector<Point>& out) {
   }
 }
 
-// Objects of about the same size, in a box that grows with their number.
+// Adds scenes of objects of about the same size, in a box that grows with the number of objects.
 void add_counts(bool quick, std::vector<Point>& out) {
   for (const int n : quick ? std::vector{10, 20, 40, 80, 160, 320}
                            : std::vector{25, 50, 100, 200, 400, 800, 1600, 3200}) {
     const NamedScene scene{fmt::format("crowd:{}", n)};
     for (const NeighbourMethod method : {boxes, trees, voronoi, voronoi_reliable}) {
-      // The diagrams take seconds each beyond this.
+      // With more objects, each diagram takes seconds.
       if (has_cells(method) && n > kMostInDiagrams) continue;
       out.emplace_back(NeighbourPoint{.scene = scene,
                                       .method = method,

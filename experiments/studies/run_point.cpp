@@ -33,10 +33,10 @@ namespace {
 
 using shapes::Corners;
 
-// Two objects of segments. Each segment crosses a segment of the other object at 45 degrees, within
-// 2^-10 px of a corner of a pixel in the view z at this resolution. The objects' boxes are as many
-// units wide as the window has pixels, so that a unit is a pixel and corners of pixels are whole
-// numbers (core/view/view.h, fit_window).
+// A scene of two objects, made of segments. Each segment crosses a segment of the other object
+// within 2^-10 px of a corner of a pixel, in the view z at kCornersResolution. The segments are at
+// 45 degrees to the pixels. The objects' boxes are as many units wide as the window has pixels. So
+// a unit is a pixel, and corners of pixels are at whole numbers (core/view/view.h, fit_window).
 constexpr const char* kCorners = "pixel-corners";
 constexpr int kCornersResolution = 96;
 
@@ -57,7 +57,7 @@ Scene pixel_corners() {
       other.push_back({q - down, q + down, q + down});
     }
   }
-  for (const double at : {-1.0, 1.0}) {  // points that extend the boxes to this size, and touch
+  for (const double at : {-1.0, 1.0}) {  // two points that touch and extend the boxes to the window
     const Vec3 p(at * kHalf, at * kHalf, 64);
     for (auto* list : {&one, &other}) list->push_back({p, p, p});
   }
@@ -67,9 +67,9 @@ Scene pixel_corners() {
   return scene.finish();
 }
 
-// Two hundred objects of one to four triangles in a cube of side 1: ten clusters of twenty objects,
-// each in a cube of side 1 / ratio at a random place. Two objects of one triangle lie in opposite
-// corners of the large cube, so that a grid covers all of it.
+// A cube of side 1 with ten clusters of twenty objects. A cluster is a cube of side 1 / ratio at a
+// random place, and an object has one to four triangles. Two more objects of one triangle lie in
+// opposite corners of the large cube, so that a grid covers the cube.
 Scene clusters(const ClusteredScene& wanted) {
   constexpr int kClusters = 10, kObjects = 20;
   shapes::Random random(wanted.seed);
@@ -101,31 +101,31 @@ Scene clusters(const ClusteredScene& wanted) {
   return scene.finish();
 }
 
-// The scene of ContactCells: a family of contacts, in which one number goes from a harmless value
-// to an extreme. Cell (i, j) lies at (i, j, i + j modulo side), so that in each of the views x, y
-// and z every cell has pixels of its own. A unit is a pixel, and corners of pixels are at whole
-// numbers in all three views. Of six cells
-// - one has a contact at risk, which does not depend on the number: in one of the views (the axes
-//   in turn) the images of its triangles are segments at 45 degrees that cross at the corner of a
-//   pixel. Every pixel centre is at least half a pixel's diagonal, 0.707 px, from one of them. Only
-//   a ball of at least this radius finds such a contact; the budget has 0.709 px;
-// - two have a contact that varies with the number. It lies at most 15/64 px from the centre of a
-//   pixel along each axis, so that much smaller balls find it at every value;
+// The scene of ContactCells: a family of contacts that depend on a number, which goes from a
+// harmless value to an extreme. Cell (i, j) lies at (i, j, i + j modulo side), so that in each of
+// the views x, y and z every cell has pixels of its own. A unit is a pixel, and corners of pixels
+// are at whole numbers in all three views. Of every six cells
+// - one has a contact at risk, which does not depend on the number. In the view along one axis the
+// images of its triangles are segments at 45 degrees that cross at the corner of a pixel. Every
+// pixel centre is at least 0.707 px, half a pixel's diagonal, from one of the two segments. So only
+// a ball of at least 0.707 px finds such a contact; the budget has 0.709 px;
+// - two have a contact that depends on the number. The contact lies at most 15/64 px from the
+// centre of a pixel along each axis, so that much smaller balls find it at every value;
 // - three have triangles that are far apart, so that there is something to cull.
 
 constexpr double kCell = 20;      // px, of a cell along each axis
-constexpr double kUlp = 0x1p-45;  // of the largest coordinates, 128 to 256
+constexpr double kUlp = 0x1p-45;  // px, the last bit of coordinates of 128 to 256
 
-// The triangles of a contact at risk, at the origin. Their images in the view z are segments.
-// slope: that of their common line along the depth.
+// Returns the triangles of a contact at risk, at the origin. Their images in the view z are
+// segments. slope: steepness of their first edges along the depth.
 std::vector<Corners> at_risk(double slope) {
   const Vec3 up(3, 3, 3 * slope), down(3, -3, -1.5 * slope), depth(0, 0, 2.5);
   return {{-up - depth, up - depth, depth}, {depth - down, depth + down, -depth}};
 }
 
-// The triangles of a contact that varies, about the origin: one for each object. With harmless
-// values each triangle is about 11 px long, and in each view there is room for the centre of a
-// pixel on both sides of the line along which the two cross.
+// Returns the triangles of a contact that depends on the number, about the origin: one for each
+// object. With harmless values each triangle is about 11 px long. The two triangles cross along a
+// line; each view has room for the centre of a pixel on both sides of this line.
 std::vector<Corners> varying(const std::string& family, double value) {
   const auto sheet = [](const Vec3& along, const Vec3& across, double aspect) {
     const Vec3 u = 2.25 * along, v = 2.5 / aspect * across;
@@ -135,8 +135,7 @@ std::vector<Corners> varying(const std::string& family, double value) {
     return std::vector<Corners>{sheet(Vec3(1, -2, 1), Vec3(1, 0, -1), aspect),
                                 sheet(Vec3(2, -1, 1), Vec3(0, -1, -1), aspect)};
   };
-  // A triangle whose tip goes through the sheet of crossing(1). That lies in the plane
-  // x + y + z = 0.
+  // A triangle whose tip goes through the sheet of crossing(1) in the plane x + y + z = 0.
   const auto wedge = [](const Vec3& tip) { return Corners{tip, {7.5, -1.5, 6}, {-1.5, 7.5, 6}}; };
   std::vector<Corners> out = crossing(family == "slivers" ? value : 1);
   if (family == "mixed") {
@@ -157,7 +156,7 @@ std::vector<Corners> varying(const std::string& family, double value) {
   return out;
 }
 
-// Moves two triangles so far apart that a view shows it, also with oriented boxes of triangles.
+// Moves two triangles so far apart that a view separates them, even if it draws oriented boxes.
 std::vector<Corners> apart(std::vector<Corners> triangles) {
   triangles.resize(2);
   for (const int o : {0, 1}) {
@@ -221,12 +220,12 @@ PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& 
   return out;
 }
 
-// A point is left out if the size of triangles requires a higher resolution.
+// A point is left out if its mean_pixels requires a higher resolution than this.
 constexpr int kMostSizedResolution = 8192;  // px
 
-// The least resolution at which the triangles of the scene that can take part cover `pixels` pixels
-// (the area of their image) on average, over the triangles and the views x, y, z. 0 if they have no
-// area.
+// Returns the least resolution at which triangles that can take part cover `pixels` pixels on
+// average, over the triangles and the views x, y, z. A triangle covers as many pixels as its image
+// has area. Returns resolution 0 if the triangles have no area.
 SizeCounts size_for(const Scene& scene, double pixels) {
   constexpr int kSample = 256;  // px; areas grow with the square of the resolution
   const Regions regions = find_regions(scene, {.self = has_self(scene)});
@@ -245,7 +244,7 @@ SizeCounts size_for(const Scene& scene, double pixels) {
     }
   }
   const double mean = area / static_cast<double>(count);
-  if (!(mean > 0)) return {};  // also without triangles, where mean is NaN
+  if (!(mean > 0)) return {};  // without triangles the mean is NaN
   const double side = std::ceil(kSample * std::sqrt(pixels / mean));
   return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
           .mean_pixels = mean * side * side / kSample / kSample};
@@ -296,7 +295,7 @@ Scene contact_cells(const ContactCells& wanted) {
       }
     }
   }
-  // Small triangles at two corners give all objects the same box, as wide as the window.
+  // Small triangles at two corners give all objects the same box, which is as wide as the window.
   for (std::size_t o = 0; o < objects.size(); ++o) {
     for (const double at : {-kCellsResolution / 2.0, kCellsResolution / 2.0}) {
       Corners& corner = objects[o].emplace_back();
@@ -334,7 +333,7 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
     different += (different.empty() ? "" : ", ") + text;
   };
   if (first.device != other.device) add("device " + first.device + " and " + other.device);
-  // By name of a count: its two values, "none" if it is missing.
+  // For each name of a count, its values in the two runs; "none" if a run lacks the count.
   std::map<std::string, std::pair<std::string, std::string>> values;
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;

@@ -1,4 +1,4 @@
-// Lists the studies, measures in rounds the points that the store lacks, and prints the summary.
+// Measures in rounds the points that the store lacks, and prints the summary.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -26,8 +26,8 @@ struct Task {
   std::vector<Point> points;
   std::vector<PointKey> keys;
   std::vector<std::size_t> open;            // positions of the points to measure
-  std::map<std::size_t, Measurement> rows;  // what the rows of open points hold so far
-  double seconds = 0;                       // of this run
+  std::map<std::size_t, Measurement> rows;  // the rows that open points have so far
+  double seconds = 0;                       // time of this run
   std::size_t measured = 0;                 // points
   std::size_t visits = 0, visits_left = 0;  // a visit: an untimed point, or a round of a timed one
 };
@@ -51,8 +51,8 @@ bool is_alike(const Provenance& a, const Provenance& b) {
          a.cpu_features == b.cpu_features;
 }
 
-// Refuses to continue if earlier rows are of another program or machine: a table would not tell
-// them apart.
+// Throws Error if earlier rows are of another program or machine, since a table would not tell such
+// rows apart.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
@@ -126,7 +126,7 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   return task;
 }
 
-// Why this machine does not have the scene; empty if it has it.
+// Returns why this machine does not have the scene, or "" if the machine has it.
 std::string lacking(const PointKey& point) {
   const std::string base = point.scene.substr(0, point.scene.find_first_of(":@"));
   const auto entry = std::ranges::find(builtin_scenes(), base, &BuiltinScene::name);
@@ -140,7 +140,8 @@ std::string lacking(const PointKey& point) {
 }
 
 // Estimates the seconds that are left. A visit is assumed to take the mean time of this run's
-// visits to the same study, or to all studies if that study had none yet.
+// visits to the same study. If that study had no visit yet, the mean is over the visits to all
+// studies.
 std::optional<double> remaining(const std::vector<Task>& tasks) {
   double seconds = 0;
   std::size_t visits = 0;
@@ -234,7 +235,7 @@ class Runner {
     return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
   }
 
-  // Keeps the results that the store has, for the same points in other studies.
+  // Collects results of the store, which other studies can use for the same points.
   void find_known() {
     std::set<std::int64_t> alike;
     for (const auto& [run, then] : store_.runs()) {
@@ -250,8 +251,8 @@ class Runner {
       }
     }
   }
-  // Keeps a row for other studies, unless it is a frame of a motion, which may depend on earlier
-  // frames.
+  // Keeps a row for other studies. Frames of a motion are not kept, since they may depend on
+  // earlier frames.
   void know(const PointKey& key, const Measurement& row, bool plain) {
     if (key.frame >= 0 || !row.left_out.empty()) return;
     if (rounds_in(row).value_or(0) > 0) {
@@ -262,14 +263,14 @@ class Runner {
       counted_.try_emplace(key, Measurement{.counts = row.counts, .device = row.device});
     }
   }
-  // The counts that a plain study has of the point.
+  // Returns the counts that a plain study has of the point, or null.
   const Measurement* counted(const At& at) const {
     if (!at.task->study->plain || !std::holds_alternative<RunPoint>(at.point())) return nullptr;
     const auto known = counted_.find(at.key());
     return known == counted_.end() ? nullptr : &known->second;
   }
 
-  // One round of all timed points: the points of one scene together.
+  // Measures one round of all timed points. The points of one scene are measured together.
   void time_points(int round) {
     for (Task& task : tasks_) {
       std::vector<At> block;
@@ -294,8 +295,8 @@ class Runner {
     }
   }
 
-  // The row of the point; if there is none, a row with the counts that another study has of it; if
-  // there are none, a row with the counts of a run now. Empty if that run failed.
+  // Returns the row of the point if there is one. Otherwise returns a row with the counts that
+  // another study has of the point, or with the counts of a run now. Empty if that run failed.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;
@@ -314,8 +315,8 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // Does all runs of a round for a scene's points, in turn. Repeats the round if the machine was
-  // busy.
+  // Measures one round of a scene's points; their runs take turns. Repeats the round if the machine
+  // was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -400,8 +401,9 @@ class Runner {
     if (progress_) progress_(now_);
   }
 
-  // Empty if measuring failed, or gave another answer than an earlier run. Then the failure is
-  // noted, this run does not measure the point again, and the next point gets a new device.
+  // Measures a point. Returns nothing if measuring failed or gave another answer than an earlier
+  // run. Then the failure is noted, the point is not measured again, and the next point gets a new
+  // device.
   std::optional<PointResult> measure(const At& at) {
     std::string why = lacking(at.key());
     if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
@@ -426,8 +428,8 @@ class Runner {
     return std::nullopt;
   }
 
-  // All runs of a point must agree: runs of this process in everything but times, and runs of
-  // different processes in the counts.
+  // Throws Error unless all runs of a point agree. Runs of this process must agree in everything
+  // but times; runs of different processes must agree in the counts.
   void require_as_before(const At& at, const PointResult& result) {
     const auto [first, is_new] = first_.try_emplace({at.task, at.position}, result);
     if (!is_new) return require_same(at.key(), first->second, result);
@@ -448,7 +450,7 @@ class Runner {
   std::optional<MeasurementContext> lab_;
   std::int64_t run_ = 0;
   Interruptible* interruptible_ = nullptr;
-  std::set<Place> closed_;                   // points whose runs are all done, or failed
+  std::set<Place> closed_;                   // points that are finished, or that failed
   std::map<Place, PointResult> first_;       // the first run of each timed point
   std::map<PointKey, Measurement> timed_;    // the times that some study has of a point
   std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of a point

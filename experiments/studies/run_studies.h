@@ -1,8 +1,9 @@
 // Measures the points of studies and stores every result at once. Also joins shards of studies.
 //
-// Timed points are measured in kRounds rounds: all timed points of all studies once, then all other
-// points, then all timed points again, and again. So minutes lie between the rounds of a point. In
-// a round the points of one scene run in turn, so that a slow moment falls on all methods alike.
+// Timed points are measured in kRounds rounds. The first round takes all timed points of all
+// studies. Then all other points are measured, and then the other rounds follow. So minutes lie
+// between the rounds of a point. In a round the points of one scene run in turn, so that a slow
+// moment affects all methods alike.
 #pragma once
 
 #include "experiments/studies/store.h"
@@ -16,10 +17,10 @@ namespace farcull {
 // resumed after an upgrade, or shards of two machines, would hold two versions, and a table would
 // not tell them apart.
 
-/// Refuses to measure the points at the positions `open` of the grid if stored rows of their
-/// contestant or peer name another version of its library than the present one. A contestant that
-/// is missing now adds no rows, so its old rows stay. Throws Error naming the store at `path`, and
-/// each such contestant with both versions.
+/// Throws Error if stored rows of a contestant or peer name another version of its library than the
+/// present one. Checks only contestants and peers of points that are to be measured; `open` has the
+/// positions of these points in the grid. A contestant that is missing now adds no rows, so its old
+/// rows stay. The error names the store at `path`, and each such contestant with both versions.
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
                            const std::vector<Point>& points, const std::vector<std::size_t>& open);
 
@@ -28,8 +29,8 @@ struct StudyOfFile {
   std::string path;
   const StoredStudy* stored = nullptr;
 };
-/// Refuses rows of one contestant or peer with two versions of its library, within a file or in two
-/// files. Throws Error naming both files and both versions.
+/// Throws Error if rows of one contestant or peer name two versions of its library, within a file
+/// or in two files. The error names both files and both versions.
 void require_one_version(const std::vector<StudyOfFile>& files);
 
 /// The files of the shards in a folder, sorted by name. Throws Error if there is none.
@@ -37,14 +38,17 @@ std::vector<std::string> shard_files(const std::string& folder);
 
 struct MergeSummary {
   std::size_t files = 0, studies = 0, rows = 0;
-  std::size_t machines = 0;  // how many differ in device, driver, CPU or CPU features
+  std::size_t machines = 0;  // with different device, driver, CPU or CPU features
 };
 
-/// Writes the store `out` with the rows of all files; it appears whole or not at all. Throws Error
-/// naming the file if it is no store of ours; if its studies, grids, seeds or commit are not those
-/// of the first file; if two files hold the same shard or the same point; if a shard or a point has
-/// no row in any of them; if rows have two versions of one library (require_one_version()); and if
-/// `out` or a journal of it exists already.
+/// Writes the store `out` with the rows of all files. `out` appears only when it is complete.
+/// Throws Error naming the file if
+/// - a file is no store of farcull;
+/// - its studies, grids, seeds or commit are not those of the first file;
+/// - two files hold the same shard or the same point;
+/// - a shard is in no file, or a point has a row in no file;
+/// - rows have two versions of one library (require_one_version());
+/// - `out` or a journal of `out` exists already.
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out);
 
 // ---- runs ----
@@ -61,8 +65,8 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// If other programs take a larger share of the processors than this, times are measured again; if
-/// that does not help, they are marked void.
+/// If other programs take a larger share of the processors than this, the times of a round are
+/// measured again. If that does not help, the round is marked void.
 constexpr double kMostLoad = 0.1;
 
 struct StudiesRequest {
@@ -75,25 +79,25 @@ struct StudiesRequest {
   Provenance provenance;  // of this run
   bool times = true;      // false: a timed point is run once, for its counts, and has no times
   double most_load = kMostLoad;
-  std::string lock = TimingLock::kFile;  // another one for tests
+  std::string lock = TimingLock::kFile;  // tests use another file
 };
 
 /// The progress of a run.
 struct StudiesProgress {
   std::string study;
   std::string point;                  // in words
-  std::string stage;                  // of its run
-  std::size_t done = 0, points = 0;   // of this shard in all studies, earlier runs included
-  std::optional<double> remaining_s;  // estimated; empty until something was measured
+  std::string stage;                  // of the point's run
+  std::size_t done = 0, points = 0;   // points of this shard in all studies
+  std::optional<double> remaining_s;  // an estimate; empty until a point was measured
 };
 
 struct StudySummary {
   std::string study;
   std::size_t points = 0;       // of this shard
-  std::size_t before = 0;       // whole before this run
-  std::size_t measured = 0;     // in this run, including those left out
+  std::size_t before = 0;       // fully measured before this run
+  std::size_t measured = 0;     // in this run, including left-out points
   std::size_t left_out = 0;     // old and new rows that say why nothing was measured
-  std::size_t void_rounds = 0;  // in old and new rows of timed points
+  std::size_t void_rounds = 0;  // rounds under too much load, in old and new rows
   double seconds = 0;           // of this run
 };
 
@@ -108,8 +112,8 @@ struct StudiesSummary {
 };
 
 /// Measures each point that has no row in the store, whose row has a reason in place of a result,
-/// or of which rounds are missing or void. Times of a point that another study of the store
-/// measured are copied; its counts are copied too if both studies are `plain`.
+/// or whose row lacks rounds or has void rounds. If another study of the store measured the times
+/// of a point, copies its times. Copies its counts if both studies are `plain`.
 ///
 /// Holds the TimingLock while points are timed. If a point fails, its error is noted, and the next
 /// point gets a new device. A signal ends the program, with a line that says how many points are

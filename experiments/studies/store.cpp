@@ -1,4 +1,4 @@
-// The tables of the store and their statements; the provenance of this process.
+// Reads and writes the tables of the store. Finds the provenance of this process.
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -34,8 +34,8 @@ void add(NamedCounts& out, std::string_view name, const Value& value) {
   }
 }
 
-// The tables of a file of version kStoreVersion; the columns of Provenance and PointKey are in the
-// order of their fields. `results` is a view for queries in SQL.
+// The tables of a file of version kStoreVersion. The columns for Provenance and PointKey are in the
+// order of the structures' fields. `results` is a view for queries in SQL.
 constexpr const char* kSchema = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
@@ -115,7 +115,7 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Writes numbers in full. Replaces invalid UTF-8, which the text of a driver may have.
+// Replaces invalid UTF-8, which the text of a driver may have.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -136,7 +136,7 @@ void bind_fields(SQLite::Statement& statement, int at, const Fields& row) {
   });
 }
 
-// The fields of a row that begin at this column of the statement.
+// Reads the fields of a row from the column `at` of the statement on.
 template <class Fields>
 Fields read_fields(SQLite::Statement& statement, int at) {
   Fields out;
@@ -190,7 +190,7 @@ Measurement stored(const PointResult& result) {
 bool breaks_promise(const Measurement& measurement) {
   const Json& counts = measurement.counts;
   if (!counts.value("promises", false)) return false;
-  // A contestant also breaks its guarantee if it does not answer.
+  // A contestant that does not answer breaks its guarantee.
   for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
                             "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
     if (counts.value(count, std::uint64_t{0}) > 0) return true;
@@ -250,7 +250,8 @@ Store::Store(const std::string& path, Access access) {
                 "measure first: farcull experiment all --quick");
   }
   guarded(path, [&] {
-    // Writable even for reading: SQLite first rolls back the unfinished work of a killed program.
+    // The file is opened for writing even if it is only read, since SQLite first rolls back the
+    // unfinished work of a killed program.
     const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
     // SQLite interprets "file:..." as a URI.
     const std::string name = path.starts_with('/') ? path : "./" + path;
@@ -393,8 +394,8 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction. It replaces a row that says why nothing was measured, and a
-    // row that lacks rounds or has void ones.
+    // One statement is one transaction. It replaces a row that says why nothing was measured, lacks
+    // rounds or has void rounds.
     static const std::string text = fmt::format(
         "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "
         "SET run = excluded.run, measured = excluded.measured, device = excluded.device, counts = "

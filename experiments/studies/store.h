@@ -2,7 +2,7 @@
 // signal, a full disk, a power failure), it loses at most the point that was being measured.
 //
 //   runs    one row for each start of the program: commit, device, driver, CPU, options, time
-//   points  the declared grid of each study, all shards of it
+//   points  all points of the declared grid of each study, for all shards
 //   rows    the result of a point, and its run
 // PRAGMA user_version holds kStoreVersion, PRAGMA application_id kStoreId.
 #pragma once
@@ -40,7 +40,7 @@ struct Declaration {
   std::string study;
   GridChoice choice;
   int shard = 1, of = 1;         // the shard in this file, 1 <= shard <= of
-  std::vector<PointKey> points;  // of all shards
+  std::vector<PointKey> points;  // the points of all shards
 };
 
 struct Row {
@@ -54,7 +54,7 @@ struct Row {
 struct StoredStudy {
   Declaration declaration;
   std::vector<Row> rows;  // by position
-  /// Whether every point of the grid has a row that is whole.
+  /// True if every point of the grid has a row, and is_whole() is true for each row.
   bool complete() const;
 };
 
@@ -64,18 +64,19 @@ struct StoredStudy {
 //             that other programs took meanwhile ("load"; null if the system does not say), and
 //             whether this was too much ("void")
 //   no_times  true if the point was measured without times (--no-times)
-/// How many rounds the row has; empty if its point is not timed.
+/// Returns the number of rounds in the row; empty if the row's point is not timed.
 std::optional<int> rounds_in(const Measurement& row);
-/// Whether nothing of the row is left to be measured.
+/// True if no part of the row remains to be measured.
 bool is_whole(const Measurement& row);
 
 class Store {
  public:
-  /// write_at_once: keeps no journal beside the file; for a file that is renamed when it is whole.
+  /// write_at_once: keeps no journal beside the file; for a file that is renamed when it is
+  /// complete.
   enum class Access { read, write, write_at_once };
   /// write: creates the file if it does not exist, and locks out every other program until this
-  /// object is destroyed. Throws Error naming the path for a file that is no store of ours, of
-  /// another version, damaged, in use, or that cannot be opened.
+  /// object is destroyed. Throws Error naming the path if the file is no store of farcull, has
+  /// another version, is damaged or in use, or cannot be opened.
   Store(const std::string& path, Access access);
   ~Store();
   Store(Store&&) noexcept;
@@ -92,14 +93,16 @@ class Store {
   std::optional<Declaration> declaration(const std::string& study) const;
   /// Repeating a declaration changes nothing. Throws Error if the study was declared differently.
   void declare(const Declaration& declaration);
-  /// Adds a row in one transaction; it is on the disk when the function returns. Replaces a row
-  /// only if it says why nothing was measured, lacks rounds or has void ones. Throws Error if the
-  /// point has any other row, is not in the grid, or the disk refuses; the file is then unchanged.
+  /// Adds a row in one transaction; it is on the disk when the function returns. Replaces an old
+  /// row only if the old row says why nothing was measured, lacks rounds or has void rounds. Throws
+  /// Error if the point has any other row or is not in the grid, or if the disk refuses; the file
+  /// is then unchanged.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
-  /// The same for a row of another store; row.run is a run of this one. Ignores row.point.
+  /// Adds a row of another store, with row.run as the number of a run in this store. Ignores
+  /// row.point.
   void add(const std::string& study, const Row& row);
-  /// Runs `work` in one transaction: keeps everything that it adds, or nothing if it throws.
+  /// Runs `work` in one transaction. If `work` throws, nothing that it added is kept.
   void together(const std::function<void()>& work);
 
   StoredStudy study(const std::string& name) const;

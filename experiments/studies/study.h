@@ -1,7 +1,7 @@
 // A study: a declared grid of points. Each point is measured independently, in any order and on any
-// machine, so that a study can be interrupted, resumed and divided among machines. Also the result
-// of a point, as structures and as a row of the store: fields have the names of the counts in the
-// store, and an empty optional is left out there.
+// machine, so that a study can be interrupted, resumed and divided among machines. The result of a
+// point is a structure, and a row of the store. Fields of the structure have the names of the
+// counts in the row; an empty optional is left out of the row.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,9 @@ class MeasurementContext;
 
 // ---- the result of a point ----
 
-/// Pairs of a scene of ContactCells whose contact varies with its number.
+/// Pairs of a scene of ContactCells whose contact depends on ContactCells::value.
 struct VaryingCounts {
-  std::uint64_t varying = 0, missed_varying = 0;  // of `colliding` and `missed`
+  std::uint64_t varying = 0, missed_varying = 0;  // such pairs among `colliding` and `missed`
   FARCULL_FIELDS(varying, missed_varying)
 };
 
@@ -58,11 +58,12 @@ struct FragmentCounts {
 /// The resolution that was chosen for a RunPoint by the size of its triangles.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
-  double mean_pixels = 0;        // mean number of pixels that a triangle covers at it
+  double mean_pixels = 0;        // mean number of pixels that a triangle covers at this resolution
   FARCULL_FIELDS(resolution, mean_pixels)
 };
 
-/// How many candidates of a method are neighbours (verify/exact.h), and how many of these collide.
+/// Candidates of a method that are neighbours (verify/exact.h). `neighbours` counts only the
+/// colliding ones.
 struct NeighbourCounts {
   std::uint64_t neighbour_candidates = 0, neighbours = 0;
   FARCULL_FIELDS(neighbour_candidates, neighbours)
@@ -72,15 +73,16 @@ struct NeighbourCounts {
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;  // missed pairs that penetrate (verify/contact.h); the
                                          // other missed pairs touch
-  /// Pairs that the same run misses with 0.9 of its radius, and without a ball; empty: not
-  /// measured. If both are 0, a run without misses says nothing about the radius.
+  /// Pairs that the same run misses with 0.9 times its radius (at_risk) and without a ball
+  /// (at_risk_bare). Empty: not measured. If both counts are 0, a run without misses says nothing
+  /// about the radius.
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
-  std::uint64_t left_by_boxes = 0;        // triangles that boxes left to views or to a join
-  std::uint64_t views_used = 0;           // views that were drawn; 0: boxes of triangles decided
-  std::uint64_t colliding_triangles = 0;  // that truly collide
+  std::uint64_t left_by_boxes = 0;  // triangles that tests of boxes did not rule out
+  std::uint64_t views_used = 0;  // views that were drawn; 0: the boxes of triangles decided alone
+  std::uint64_t colliding_triangles = 0;
   std::uint64_t kept_triangles = 0, kept_objects = 0;
-  bool promises = false;  // the method guarantees to miss nothing, by its options
-  /// True if the method is guaranteed, but its device does not keep the assumptions; else empty.
+  bool promises = false;  // with its options, the method guarantees to miss nothing
+  /// True if the device breaks the assumptions of the method's guarantee; otherwise empty.
   std::optional<bool> revoked = {};
   std::string scene_hash = {};
   std::optional<std::uint64_t> object_triangles = {};  // only for i-collide
@@ -118,10 +120,11 @@ struct LemmaCounts {
                  step_px, radius_px, budget_px, promises, revoked)
 };
 
-/// Where the published radius may miss a pair: in one of the views x, y and z the distance (|x| +
-/// |y|) of the contact from a corner of the pixels is at most corner_px, and both rectangles are
-/// turned from a diagonal by at most the angle of this cosine (placements.cpp derives both). The
-/// probability is the sum over the views: 3 * 2 corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
+/// Where the published radius may miss a pair. In one of the views x, y and z
+/// - the distance |x| + |y| of the contact from a corner of the pixels is at most corner_px, and
+/// - both rectangles are turned from a diagonal by at most the angle whose cosine is corner_cosine.
+/// placements.cpp derives the two limits. The probability is the sum over the views: 3 * 2
+/// corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
 struct CornerStratum {
   double corner_px = 0, corner_cosine = 0;
   FARCULL_FIELDS(corner_px, corner_cosine)
@@ -136,7 +139,7 @@ struct PlacementCounts {
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
   bool promises = false;
-  std::optional<CornerStratum> stratum = {};  // from which placements were drawn; empty: from all
+  std::optional<CornerStratum> stratum = {};  // placements come from it; empty: from anywhere
   FARCULL_FIELDS(placements, colliding_placements, missed_placements, colliding, missed,
                  largest_miss_px, radius_px, budget_px, promises, stratum)
 };
@@ -145,10 +148,10 @@ struct PlacementCounts {
 /// of pixels, and the prediction of method/miss_model.h.
 struct ForecastCounts {
   std::uint64_t colliding = 0, positions = 0;
-  std::uint64_t missed_in_all = 0;                  // pairs, summed over the positions
-  std::uint64_t missed_least = 0, missed_most = 0;  // at one position
+  std::uint64_t missed_in_all = 0;                  // missed pairs, summed over the positions
+  std::uint64_t missed_least = 0, missed_most = 0;  // missed pairs at one position
   double expected = 0, low = 0, high = 0;           // the prediction for one position
-  std::uint64_t outside = 0;  // positions whose number of misses is not in low .. high
+  std::uint64_t outside = 0;  // positions whose number of misses is not in [low, high]
   std::uint64_t triangles = 0;
   bool promises = false;
   std::string scene_hash;
@@ -159,12 +162,12 @@ struct ForecastCounts {
 /// Counts of a frame of the cloth with every pair of triangles accounted for (verify/accounting.h),
 /// and results of the step to this frame (scenes/cloth/cloth.h).
 struct ClothCounts {
-  std::uint64_t colliding = 0;  // pairs, with neighbours and missed ones
+  std::uint64_t colliding = 0;  // pairs, including neighbours and missed pairs
   std::uint64_t neighbours = 0, missed = 0, candidates = 0;  // pairs
   std::uint64_t neighbour_candidates = 0;  // candidates that are neighbours, which are never culled
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
-  // As in RunCounts.
+  // RunCounts explains these.
   std::uint64_t left_by_boxes = 0, views_used = 0;
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
   bool promises = false;
@@ -182,8 +185,8 @@ struct ClothCounts {
 
 constexpr int kSceneResolution = 512;  // px, for PixelCounts
 
-/// Pixels that a triangle covers at kSceneResolution in the views x, y and z (the area of its
-/// image): the 10th, 50th and 90th percentile. They grow with the square of the resolution.
+/// The 10th, 50th and 90th percentile of the area of a triangle's image, in pixels, in the views x,
+/// y and z at kSceneResolution. The area grows with the square of the resolution.
 struct PixelCounts {
   double pixels_tenth = 0, pixels_half = 0, pixels_ninety = 0;
   FARCULL_FIELDS(pixels_tenth, pixels_half, pixels_ninety)
@@ -203,10 +206,10 @@ struct SceneCounts {
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
 using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 
-/// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong`
-/// count the answers that differ from those for closed triangles; names with `own_` count those
-/// that differ from what the library's documentation guarantees. `scores` holds these counts
-/// for each family, parameter and kind.
+/// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong` count
+/// answers that differ from those for closed triangles. Counts with `own_` in their names count
+/// answers that differ from what the library's documentation guarantees. `scores` holds these
+/// counts for each family, parameter and kind.
 struct LibraryCounts {
   NamedCounts values = {};
 };
@@ -215,9 +218,9 @@ struct LibraryCounts {
 struct SetCounts {
   NeighbourSizes sizes;
   std::uint64_t triangles = 0, objects = 0;  // of the scene
-  std::uint64_t accounted = 0;  // pairs of triangles of different objects, all of which the
-                                // accounting decided (verify/distance_accounting.h)
-  bool promises = false;        // to lose no nearest neighbour and no nearest pair of triangles
+  std::uint64_t accounted = 0;  // pairs of triangles of different objects; the accounting decided
+                                // all of them (verify/distance_accounting.h)
+  bool promises = false;        // guarantees to lose no nearest neighbour and no nearest pair
   std::string scene_hash;
   FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
 };
@@ -229,7 +232,7 @@ struct DistanceCounts {
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
   std::uint64_t wrong = 0;      // distances that are not the nearest double, or were not asked for
-  bool promises = false;        // that every distance is the nearest double
+  bool promises = false;        // guarantees that each distance is the double nearest to the truth
   std::string library = {};     // with its version
   std::string scene_hash;
   FARCULL_FIELDS(asked, errors, triangles, objects, accounted, wrong, promises, library, scene_hash)
@@ -240,12 +243,12 @@ using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, 
                             ForecastCounts, ClothCounts, SceneCounts, LibraryCounts, SetCounts,
                             DistanceCounts>;
 
-/// The names and values of counts. A member with fields is replaced by its fields.
+/// Returns the names and values of counts. A member that has fields is replaced by its fields.
 NamedCounts to_columns(const Counts& counts);
 
-/// Milliseconds; they differ between runs.
+/// Times in milliseconds. They differ between runs.
 struct PointTimes {
-  std::optional<double> build = {};  // of a library's hierarchies
+  std::optional<double> build = {};  // the time to build a library's hierarchies
   std::optional<double> cull = {}, exact = {};
   std::optional<double> total = {};  // without setup
   std::optional<double> setup = {};
@@ -254,10 +257,10 @@ struct PointTimes {
 
 /// The result of one run of a point.
 struct PointResult {
-  Counts counts = {};  // the same on every run on the same device, bit for bit; on native and cpu
-                       // the same on every machine
+  Counts counts = {};  // equal in all runs on one device, bit for bit; if the device is "native" or
+                       // "cpu", equal on all machines
   PointTimes times = {};
-  std::uint64_t answer = 0;   // a hash of the pairs, by which runs are compared; it is not stored
+  std::uint64_t answer = 0;   // hash of the pairs, to compare runs; it is not stored
   std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build lacks, a
@@ -281,10 +284,10 @@ bool breaks_promise(const Measurement& measurement);
 
 /// Chooses the grid of a study.
 struct GridChoice {
-  bool quick = false;      // the small one, for a first look and for tests
+  bool quick = false;      // the small grid, for a first look and for tests
   std::uint64_t seed = 1;  // seed of random points; at least 1
-  std::string suite = {};  // of the study "libraries": the folder of a suite; empty: generated
-  std::vector<std::string> contestants = {};  // of the same study: those to measure; empty: all
+  std::string suite = {};  // for the study "libraries": folder of a suite; empty: it is made
+  std::vector<std::string> contestants = {};  // for the study "libraries"; empty: all
 };
 
 struct Study {
@@ -294,11 +297,12 @@ struct Study {
   /// The points, each once. Points of one scene are together, except in a campaign. The same choice
   /// gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
-  /// Throws Error for faults of the device or the machine: the point fails; a later run repeats it.
+  /// Throws Error for faults of the device or the machine. Then the point fails, and a later run
+  /// repeats it.
   std::function<PointResult(const Point&, MeasurementContext&)> measure;
-  /// The library that would answer the point now, with its version, as in "CGAL 5.5.1": the value
-  /// of the count `library` in its row. Empty: no library answers it, or the library is missing.
-  /// Null: no point of this study asks a library.
+  /// Returns the library that would answer the point now, with its version, as in "CGAL 5.5.1".
+  /// This is the count `library` in the point's row. Returns "" if no library answers the point, or
+  /// if the library is missing. Null: no point of this study asks a library.
   std::function<std::string(const Point&)> library = {};
   /// RunPoints have exactly the counts of measure_run(), so that studies can share their rows.
   bool plain = false;
@@ -310,11 +314,11 @@ struct Study {
 
 /// All studies, in the order of docs/experiments.md.
 const std::vector<Study>& studies();
-/// The studies of `farcull experiment all`: no campaigns.
+/// The studies of `farcull experiment all`: all that are no campaigns.
 std::vector<Study> studies_of_all();
-/// Throws Error naming the studies if none has that name.
+/// Returns the study with this name. Throws Error naming all studies if there is none.
 const Study& study_named(const std::string& name);
-/// Throws Error naming the contestants if the study "libraries" knows none of that name.
+/// Throws Error naming all contestants if the study "libraries" has none with this name.
 void require_contestant(const std::string& name);
 
 /// The study reduced to points whose answer may depend on the device: methods that draw or choose

@@ -1,6 +1,6 @@
-// The study "scenes": the scenes of all other studies and the size of their triangles in pixels.
-// The studies "culling", "efficiency" and "scaling": how many pairs methods leave to exact
-// predicates, at rest and in motion, and how their time grows.
+// The study "scenes" lists the scenes of all other studies, with the size of their triangles in
+// pixels. "culling" and "efficiency" count the pairs that methods leave to exact predicates, at
+// rest and in motion. "scaling" measures how the time of methods grows.
 //
 // FAR against I-COLLIDE: Govindaraju, Lin and Manocha, Fast and Reliable Collision Culling using
 // Graphics Hardware, TVCG 2006, section 6. Quick-CULLIDE against CULLIDE: IEEE VR 2005. Time
@@ -18,14 +18,14 @@ namespace {
 
 using enum Method;
 
-// The scene of a point; null for the lemma experiment, which has no scene.
+// Returns the scene of a RunPoint or PeerPoint, and null for other points.
 const PointScene* scene_of(const Point& point) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return &run->scene;
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return &peer->scene;
   return nullptr;
 }
 
-// Lists each scene once; a moving scene with the middle one of its measured frames.
+// Lists each scene once. A moving scene is listed with the middle one of its measured frames.
 std::vector<Point> scenes_grid(const GridChoice& choice) {
   std::vector<std::pair<std::string, std::vector<RunPoint>>> scenes;
   for (const Study& study : studies_of_all()) {
@@ -52,9 +52,9 @@ std::vector<Point> scenes_grid(const GridChoice& choice) {
   return out;
 }
 
-// How many pixels each triangle covers at kSceneResolution: the areas of the images in the views x,
-// y and z, ascending. Only of triangles that may take part: their box meets another object's box,
-// or their object is tested against itself.
+// Returns the areas in pixels of the images of triangles at kSceneResolution in the views x, y and
+// z, ascending. Takes only triangles that may take part: the triangle's box meets another object's
+// box, or its object is tested against itself.
 std::vector<double> covered_pixels(const Scene& scene) {
   std::vector<double> out;
   const Regions regions = find_regions(scene, {.self = true});
@@ -97,10 +97,9 @@ PointResult measure_scene(const Point& point, MeasurementContext& lab) {
   return {.counts = counts, .times = {.exact = lab.truth().ms}, .device = "cpu"};
 }
 
-constexpr const char* kBoxes = "cgal-boxes";  // triangles whose boxes meet
-constexpr const char* kOriented = "fcl-obb";  // leaves of FCL's trees whose oriented boxes meet
+constexpr const char* kBoxes = "cgal-boxes";  // finds triangles whose boxes meet
+constexpr const char* kOriented = "fcl-obb";  // finds leaves of trees whose oriented boxes meet
 
-// Scans and models, smooth bodies, thin triangles, cloth.
 std::vector<PointScene> culled_scenes(bool quick) {
   std::vector<const char*> names = {"two-bunnies",     "armadillo-elephant", "dragon-bunny",
                                     "mannequin-devil", "two-tori",           "crowd:400",
@@ -126,8 +125,8 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
   return out;
 }
 
-// Libraries leave neighbours out, but the method boxes gives them to the predicates. They are
-// counted here, so that they can be subtracted from its candidates.
+// Counts the neighbours among the candidates of the method `boxes`, so that they can be subtracted:
+// libraries leave neighbours out, but `boxes` gives them to the predicates.
 PointResult measure_culling(const Point& point, MeasurementContext& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
@@ -139,10 +138,10 @@ PointResult measure_culling(const Point& point, MeasurementContext& lab) {
 
 struct MovingCase {
   const char* scene;
-  bool self = false;  // its objects are also tested against themselves, by few methods
+  bool self = false;  // each object is tested against itself; few methods can do this
 };
 
-// All scenes that move, in sizes that methods that draw can handle on a software device.
+// Returns all scenes that move, in sizes that are practical for drawing on a software device.
 const std::vector<MovingCase>& moving_cases(bool quick) {
   static const std::vector<MovingCase> full = {
       {"two-spheres"},     {"needles:60"},  {"crowd:60"},           {"field:4000"},
@@ -169,7 +168,7 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
 struct Case {
   std::string scene;
   int resolution;  // of the methods that draw
-  bool drawn;      // also by methods that draw, which are far slower on a software device
+  bool drawn;      // true: methods that draw run, which are far slower on a software device
 };
 
 std::vector<Case> cases(bool quick) {
@@ -178,8 +177,9 @@ std::vector<Case> cases(bool quick) {
   const auto add = [&out](std::string scene, int resolution, bool drawn) {
     out.push_back({std::move(scene), resolution, drawn});
   };
-  // At least six sizes of each, so that a fitted exponent has a confidence interval.
-  // Objects: all are of about the same size, in a box that grows with their number.
+  // Each plot has at least six sizes, so that a fitted exponent has a confidence interval.
+  // Time against the number of objects of about the same size, in a box that grows with that
+  // number.
   for (const int n :
        quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
     add(fmt::format("crowd:{}", n), kUsual, true);
@@ -187,12 +187,12 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
   }
-  // Density: the same objects closer together. Collisions grow with it.
+  // Time against density. Denser objects collide more often.
   const int objects = quick ? 20 : 100;
   for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
   }
-  // Polygons: six tori, ever finer.
+  // Time against the number of polygons: six tori, ever finer.
   for (const int n :
        quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
     add(fmt::format("torii:{}", n), kUsual, true);
@@ -200,7 +200,7 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {5000, 20000, 80000}) add(fmt::format("torii:{}", n), kUsual, n <= 5000);
   }
-  // Pixels.
+  // Time against resolution.
   for (const int pixels : quick ? std::vector{32, 64, 128, 256, 512, 1024}
                                 : std::vector{64, 128, 256, 512, 1024, 2048}) {
     add("two-spheres", pixels, true);
@@ -208,8 +208,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Nine is the smallest number of runs whose range contains the median of another nine runs with a
-// probability of 95 % (docs/experiments.md, "Statistics").
+// Nine runs: their range contains the median of another nine runs with a probability of 95 %. Fewer
+// runs would not do (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
 std::vector<RunPoint> points_of(const Case& c) {
@@ -240,7 +240,8 @@ Study culling_study() {
 Study efficiency_study() {
   const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    // At least six frames: with fewer, their range contains the median with less than 95 %.
+    // At least six frames. The range of fewer frames contains the median with a probability below
+    // 95 %.
     const long frames = choice.quick ? 6 : 12;
     for (const MovingCase& moving : moving_cases(choice.quick)) {
       for (long frame = 0; frame < frames; ++frame)

@@ -28,9 +28,9 @@ QUICK = ('pair', 'distance')  # kinds without a path
 AHEAD = 32  # quick questions that are sent before their answers
 LONGEST = 1 << 16  # bytes of a line
 MOST = 1 << 28  # bytes of an answer; an endless answer would take all memory
-AGAIN = 16  # of so many questions of a family, one is asked again
-OFF = 1e-6  # relative errors of distances and of points above this are counted
-ROUNDED = 2.0 ** -48  # errors of distances up to this share of the largest coordinate are rounding, and are not counted
+AGAIN = 16  # one of this many questions of a family is asked again
+OFF = 1e-6  # larger relative errors of distances and of points are counted
+ROUNDED = 2.0 ** -48  # smaller errors of distances, as a share of the largest coordinate, count as rounding
 
 
 class Wrong(Exception):
@@ -40,13 +40,13 @@ class Wrong(Exception):
 # ---- a process and its answers
 
 class Child:
-    """A process with limits. `lines` is a queue of its output: lists of lines, and an empty list at the end."""
+    """A process with limits. `lines` is a queue of its output: lists of lines, then an empty list at the end."""
 
     def __init__(self, command, options):
         def limit():
             import resource  # pylint: disable=import-outside-toplevel  # not on Windows
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # so that it ends even if this program was killed
+            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # the process ends even if this program was killed
             resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
         self.errors = tempfile.TemporaryFile()
         posix = os.name == 'posix'
@@ -74,7 +74,7 @@ class Child:
         self.lines.put([])
 
     def write(self):
-        """Writes what was sent. If the process does not read, only this thread waits."""
+        """Writes the texts of send() to the process. If the process does not read, only this thread waits."""
         with contextlib.suppress(OSError), self.process.stdin as file:
             for text in iter(self.texts.get, b''):
                 file.write(text)
@@ -87,7 +87,7 @@ class Child:
         self.texts.put(b'')
 
     def end(self, seconds):
-        """Waits for the end of the process, and returns how it ended and why: an outcome and a reason."""
+        """Waits for the end of the process. Returns an outcome and a reason: how it ended, and why."""
         try:
             status = self.process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -116,7 +116,7 @@ Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS or card; fields: those after the kind; family: deaths are counted for each family.
+# kind: one of KINDS, or card. fields: the fields after the kind. family: deaths are counted for each family.
 Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
 
 FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
@@ -131,8 +131,8 @@ def number(text, kind=float):
 
 
 def parse(kind, fields, so_far):
-    """Reads the fields of one line of an answer. Returns the Answer for its last line, with no ns if the line has no time.
-    Adds other lines to `so_far`. Raises ValueError for a line that the grammar does not have."""
+    """Reads the fields of one line of an answer. Returns the Answer if it is the last line; `ns` is empty if the line has no
+    time. Adds other lines to `so_far`. Raises ValueError for a line that the grammar does not have."""
     word, *rest = fields
     if word == 'refused' and rest:
         return Answer('refused', None, 0, ' '.join(rest)[:160])
@@ -143,7 +143,7 @@ def parse(kind, fields, so_far):
         so_far.append(rest)
         return None
     if kind == 'mesh' and word == 'pair':
-        if not FOUR.fullmatch('\t'.join(rest)):  # one match, since there are millions
+        if not FOUR.fullmatch('\t'.join(rest)):  # one match for four numbers, since there are millions of lines
             raise ValueError(rest)
         so_far.append(tuple(map(int, rest)))
         return None
@@ -156,8 +156,8 @@ def parse(kind, fields, so_far):
 
 
 def ask_from(child, questions, first, answers, limit, start):
-    """Asks one process from question `first` on, and fills `answers`. Returns the first question without an answer, and how
-    the process ended."""
+    """Asks one process the questions from `first` on, and fills `answers`. Returns the index of the first question without an
+    answer, and how the process ended."""
     following, sent, so_far, size, since, lines = first, first, [], 0, time.monotonic(), collections.deque()
     while True:
         quick = sent < len(questions) and not so_far and questions[sent].kind in QUICK
@@ -202,8 +202,8 @@ def ask_from(child, questions, first, answers, limit, start):
 
 
 def ask(command, questions, options):
-    """An Answer to each question, and how the process ended after the last question. If a process dies, the question that it
-    did not answer gets that outcome, and a new process gets the next question."""
+    """Returns an Answer to each question, and how the process ended after the last question. If a process dies, its unanswered
+    question gets the outcome of the process, and a new process gets the next question."""
     answers = [NOT_ASKED] * len(questions)
     following, deaths, start = 0, collections.Counter(), max(30, 6 * options.limit)
     while following < len(questions):
@@ -225,10 +225,10 @@ def ask(command, questions, options):
 
 
 def ask_twice(command, questions, options):
-    """The answers, and for each question whether a second answer differed (None: it was not asked again)."""
+    """Returns the answers, and for each question whether a second answer differed (None: it was not asked again)."""
     answers = ask(command, questions, options)[0]
     step = AGAIN if questions and questions[0].kind != 'mesh' else 1
-    at = collections.Counter()  # of each family
+    at = collections.Counter()  # number of questions of each family
     again = []
     for i, question in enumerate(questions):
         if at[question.family] % step == 0 and answers[i].outcome in ('answered', 'refused'):
@@ -238,7 +238,7 @@ def ask_twice(command, questions, options):
     for i, second in zip(again, ask(command, [questions[i] for i in again], options)[0]):
         if second.outcome != 'not asked':
             first = answers[i]
-            if questions[i].kind == 'mesh':  # in any order
+            if questions[i].kind == 'mesh':  # pairs of a mesh may come in any order
                 first, second = (one._replace(value=sorted(one.value or [])) for one in (first, second))
             differs[i] = (second.outcome, second.value) != (first.outcome, first.value)
     return answers, differs
@@ -252,13 +252,13 @@ VALUES = {'answers': KINDS, 'means': ('closed', 'crossing'), **dict.fromkeys(('d
 
 
 def card_of(command, answer):
-    """The card of the program; if it has none, a card by which it is asked everything."""
+    """Returns the program's card. A program without a card is asked everything."""
     if answer.outcome not in ('answered', 'refused'):
         raise Wrong(f'{command[0]}: has no answer to the first question, `card`: {answer.outcome} {answer.reason}')
     return {**CARD, 'name': ' '.join(command), **dict(answer.value or [])}
 
 
-# ---- exact geometry: for what a library's own documentation promises, and for points that it returns
+# ---- exact geometry: for promises of a library's documentation, and for points that a library returns
 
 def minus(a, b):
     return [x - y for x, y in zip(a, b)]
@@ -273,7 +273,8 @@ def cross(a, b):
 
 
 def whole(*triangles):
-    """The triangles with whole coordinates: all are multiplied by one power of two, which changes no sign."""
+    """Returns the triangles with integer coordinates. All coordinates are multiplied by one power of two, which changes no
+    sign."""
     ratios = [[[x.as_integer_ratio() for x in corner] for corner in t] for t in triangles]
     most = max(below for t in ratios for corner in t for _, below in corner)
     return [[[above * (most // below) for above, below in corner] for corner in t] for t in ratios]
@@ -284,8 +285,8 @@ def normal(t):
 
 
 def proper(t):
-    """Whether a triangle is no segment and no point. Doubles decide if a component of the normal is far above their
-    rounding."""
+    """True if a triangle is no segment and no point. If a component of the normal is far above its rounding error, doubles
+    decide."""
     u, v = minus(t[1], t[0]), minus(t[2], t[0])
     for i, k in (0, 1), (1, 2), (2, 0):
         p, q = u[i] * v[k], u[k] * v[i]
@@ -311,7 +312,7 @@ def point_to_segment(p, segment):
 
 
 def point_to_triangle(p, t):
-    """The square of the distance, for whole or rational numbers."""
+    """Returns the square of the distance, for integers or fractions."""
     n = normal(t)
     if any(n) and all(dot(n, cross(minus(b, a), minus(p, a))) >= 0 for a, b in edges(t)):
         return Fraction(dot(n, minus(p, t[0])) ** 2, square(n))
@@ -319,14 +320,14 @@ def point_to_triangle(p, t):
 
 
 def segment_to_segment(e, f):
-    """The square of the distance of two segments. The differences of their points form a parallelogram; it is cut into two
-    triangles, and the distance of the origin from these is found."""
+    """Returns the square of the distance of two segments. The differences of their points form a parallelogram of two
+    triangles. The distance is that of the origin from these triangles."""
     d = [[minus(p, q) for q in f] for p in e]
     return min(point_to_triangle([0, 0, 0], [d[0][0], corner, d[1][1]]) for corner in (d[0][1], d[1][0]))
 
 
 def within(a, b, margin):
-    """Whether two triangles that do not cross are no farther apart than the margin."""
+    """True if two triangles that do not cross are at most the margin apart."""
     boxes = [[(min(axis), max(axis)) for axis in zip(*t)] for t in (a, b)]
     # The margin is a double, so rounding does not bring a gap from below the margin to above it.
     if any(max(p[0] - q[1], q[0] - p[1]) > float(margin) for p, q in zip(*boxes)):
@@ -342,8 +343,8 @@ def within(a, b, margin):
 
 
 def interval(t, n, origin, along):
-    """The part of triangle t in the plane through `origin` with the normal n, as values along `along`; None if t is not on
-    both sides of the plane."""
+    """Cuts triangle t with the plane through `origin` with the normal n. Returns the cut as values along `along`, or None if t
+    is not on both sides of the plane."""
     side = [dot(n, minus(p, origin)) for p in t]
     if not min(side) < 0 < max(side):
         return None
@@ -357,7 +358,7 @@ def interval(t, n, origin, along):
 
 
 def crosses(a, b):
-    """Whether two triangles cross (docs/suite.md): they share a point that is on no edge of either one."""
+    """True if two triangles cross (docs/suite.md): they share a point that is on no edge of either triangle."""
     a, b = whole(a, b)
     m, n = normal(a), normal(b)
     along = cross(m, n)
@@ -366,8 +367,8 @@ def crosses(a, b):
 
 
 def promised(card, a, b, label, kind=None):
-    """Whether the documentation promises the right answer about two triangles. label: whether they collide. kind: the kind
-    of contact if they are a pair of the suite."""
+    """True if the documentation promises the right answer about two triangles. label: whether they collide. kind: the kind of
+    contact of a pair of the suite."""
     if (card['degenerate'] == 'no' or card['means'] == 'crossing') and not (proper(a) and proper(b)):
         return False
     if label and card['means'] == 'crossing':
@@ -399,23 +400,23 @@ class Suite:
             return file.read()
 
     def text(self, name):
-        """The text of a file. Raises Wrong if its sum is not that of suite.txt."""
+        """Returns the text of a file. Raises Wrong if suite.txt has another sum."""
         text = self.read(name)
         if hashlib.sha256(text.encode()).hexdigest() != self.files.get(name):
             raise Wrong(f'{name}: its SHA-256 is not the one of suite.txt, so it was changed')
         return text
 
     def lists(self, folder):
-        """The names of the lists in a folder."""
+        """Returns the names of the lists in a folder."""
         return [name for name in self.files if re.fullmatch(f'{folder}/[^/]*[.]txt', name)]
 
     def lines(self, name):
-        """The family and the lines, as words, of a list."""
+        """Returns the family of a list, and its lines as lists of words."""
         lines = self.text(name).split('\n')
         return lines[0].split(' ')[2], [line.split() for line in lines[1:] if line and line[0] != '#']
 
     def meshes(self):
-        """The folders of each family of meshes, by their numbers."""
+        """Returns the folders of each family of meshes, sorted by number."""
         out = {}
         for name in (os.path.dirname(name) for name in self.files if name.endswith('/mesh.txt')):
             out.setdefault(self.properties(name)['family'], []).append(name)
@@ -426,7 +427,7 @@ class Suite:
         return dict(line.split(' ', 1) for line in self.text(name + '/mesh.txt').split('\n') if line)
 
     def objects(self, name):
-        """The objects of a mesh: their paths in the suite, and for each triangle its corners by index and by position."""
+        """Returns the objects of a mesh: paths in the suite, and for each triangle its corners by index and by position."""
         paths = sorted((path for path in self.files if os.path.dirname(path) == name and path.endswith('.obj')),
                        key=lambda path: int(os.path.basename(path)[:-4]))
         objects = []
@@ -482,8 +483,8 @@ def questions_of(kind, family, suite, lines):
 
 
 def lists_of(card, suite, kinds):
-    """Kinds with lines that one process is asked about: each list of pairs; and all questions of each other kind together,
-    since they are few, and starting a process takes longer than most of them."""
+    """Yields kinds with the lines that one process gets. For pairs, each list has its own process. All questions of another
+    kind share a process: they are few, and starting a process takes longer than most of them."""
     for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
     families = {}  # of questions about meshes, each of which has a list
@@ -495,8 +496,9 @@ def lists_of(card, suite, kinds):
 
 
 def is_scored(card, one):
-    """Whether the right answer is known, and the documentation means the same. Libraries may call a point of the surface
-    (parameter 2: at a vertex) inside or not; only methods that promise the answer of docs/suite.md are scored there."""
+    """True if the answer to the question can be scored: its label is known and the documentation has the same meaning.
+    Libraries may call a point of the surface (parameter 2: at a vertex) inside or outside. Such points are scored only for
+    methods that promise the answer of docs/suite.md."""
     return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
 
 
@@ -530,10 +532,10 @@ def score_distance(label, numbers, value, row):
         def exact(corners):
             return [[Fraction(x) for x in corner] for corner in corners]
 
-        # How far a point may be off: a part of the size, but at least the distance of neighbouring doubles.
+        # The permitted error of a point: a part of the size, but at least the distance of neighbouring doubles.
         near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)
         points = exact([points[:3], points[3:]])
-        # Both points may be off by `near`, the distance by OFF. Points that are near their triangles are never too close.
+        # Each point may be off by `near`, and the distance by OFF. Points that are near their triangles are never too close.
         most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
         row['points'] += 1
         row['points off'] += square(minus(*points)) > most ** 2 or any(
@@ -557,7 +559,7 @@ def score_mesh(card, objects, rows, reported, row):
 
 
 def ask_family(command, card, suite, names, options):
-    """A row for each mesh of a family. One process is asked about all meshes."""
+    """Returns a row for each mesh of a family. One process is asked about all meshes."""
     objects, questions = [], []
     for name in names:
         paths, of = suite.objects(name)
@@ -575,7 +577,7 @@ def ask_family(command, card, suite, names, options):
 
 
 def rows_of(command, card, suite, kinds, options):
-    """A row for each kind of question, family, parameter and label; for meshes, the name is in place of the label."""
+    """Returns a row for each kind of question, family, parameter and label. For meshes, the name replaces the label."""
     rows = {}
     for kind, listed in lists_of(card, suite, kinds):
         answers, differs = ask_twice(command, [one.question for one in listed], options)
@@ -639,11 +641,11 @@ SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'ow
 
 
 def as_json(card, rows):
-    """What the study `libraries` (experiments/studies/libraries.cpp) keeps of one kind of question: the card, the sums of all
-    rows, and the rows."""
+    """Returns what the study `libraries` (experiments/studies/libraries.cpp) keeps of one kind of question: the card, the sums
+    of all rows, and the rows."""
     total, scores = Row(), []
     for (kind, family, parameter, label), row in rows.items():
-        if kind == 'mesh':  # colliding pairs are counted in place of questions
+        if kind == 'mesh':  # a mesh counts colliding pairs in place of questions
             row['asked'] = row['scored'] = row['colliding']
         if kind == 'distance':
             row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))

@@ -1,9 +1,9 @@
-// Labels of pairs and of meshes; questions of a suite and their labels.
+// Decides labels of pairs, meshes and questions of a suite.
 //
 // The kind of a pair follows from the common points of two triangles. Their intersection is convex,
 // and each corner of it is a corner of a triangle, a point where an edge crosses the other
-// triangle's plane, or a point where two edges cross. All are found as rational numbers, so nothing
-// is rounded.
+// triangle's plane, or a point where two edges cross. These points are computed as rational
+// numbers, so nothing is rounded.
 #include "experiments/suite/label.h"
 
 #include <fmt/format.h>
@@ -52,7 +52,7 @@ Q3 edge(const Triangle& t, int i) { return minus(t[(i + 1) % 3], t[i]); }
 
 Q3 normal(const Triangle& t) { return cross(edge(t, 0), edge(t, 1)); }
 
-/// Whether p is on one of the three closed edges.
+/// True if p is on one of the three closed edges.
 bool on_edge(const Q3& p, const Triangle& t) {
   for (int i = 0; i < 3; ++i) {
     const Q3 e = edge(t, i);
@@ -65,7 +65,8 @@ bool on_edge(const Q3& p, const Triangle& t) {
   return false;
 }
 
-/// Whether p is in the closed triangle, which may be a segment or a point.
+/// True if p is in the closed triangle, which may be a segment or a point. n: the normal of the
+/// triangle.
 bool lies_in(const Q3& p, const Triangle& t, const Q3& n) {
   if (is_zero(n)) return on_edge(p, t);
   if (sgn(dot(n, minus(p, t[0]))) != 0) return false;
@@ -75,7 +76,8 @@ bool lies_in(const Q3& p, const Triangle& t, const Q3& n) {
   return true;
 }
 
-/// The corners of the intersection of two triangles, each once, and perhaps more of its points.
+/// All corners of the intersection of two triangles, and perhaps more points of the intersection.
+/// Each point occurs once.
 class CommonPoints {
  public:
   CommonPoints(const Triangle& a, const Triangle& b)
@@ -90,7 +92,7 @@ class CommonPoints {
   }
 
   const std::vector<Q3>& points() const { return points_; }
-  /// The mean of the points: it is in the relative interior of the intersection.
+  /// Returns the mean of the points, which is in the relative interior of the intersection.
   Q3 inner() const {
     Q3 out;
     for (const Q3& p : points_) {
@@ -99,13 +101,14 @@ class CommonPoints {
     for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
     return out;
   }
-  /// Whether both triangles are the same set of points: each holds the corners of the other.
+  /// True if the two triangles are the same set of points: each triangle holds the corners of the
+  /// other triangle.
   bool all_of_both() const {
     return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
            std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
   }
-  /// Whether all six corners are in one plane. Precondition: there are at least two common points.
-  /// So two triangles that are segments (both normals are 0) lie on one line.
+  /// True if all six corners are in one plane. Precondition: there are at least two common points.
+  /// So if both triangles are segments (both normals are 0), they lie on one line.
   bool coplanar() const {
     const Q3& n = is_zero(normal_a_) ? normal_b_ : normal_a_;
     const auto in_plane = [&](const Q3& p) { return sgn(dot(n, minus(p, a_[0]))) == 0; };
@@ -151,7 +154,8 @@ Triangle rational_triangle(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
-/// Whether p is a corner of the triangle; if the triangle is a segment, whether p is an end of it.
+/// True if p is a corner of the triangle. If the triangle is a segment: true if p is an end of the
+/// segment.
 bool is_corner(const Q3& p, const Triangle& t) {
   if (std::find(t.begin(), t.end(), p) == t.end()) return false;
   if (!is_zero(normal(t))) return true;
@@ -176,7 +180,7 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
   // The relative interior of a triangle is the triangle without its edges. A triangle that is a
-  // segment has only edges; here it meets the other's interior, in one point.
+  // segment has only edges. If one_point is true here, it meets the interior of the other triangle.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
@@ -186,7 +190,7 @@ void require_equal(bool one, bool other, const char* oracles, const std::string&
     throw Error(where, fmt::format("{} disagree", oracles), kReport + std::string("the pair"));
 }
 
-/// How many vertices two triangles of one object share: indices in both triangles, each once.
+/// Returns the number of vertices that two triangles of one object share by index.
 std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
   const std::array<std::uint32_t, 3>& a = scene.triangles[pair.a];
   const std::array<std::uint32_t, 3>& b = scene.triangles[pair.b];
@@ -198,7 +202,7 @@ std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
   return out;
 }
 
-/// Throws Error if two vertices that triangles of the object use are at one position.
+/// Throws Error if triangles of the object use two vertices at one position.
 void require_distinct(const Scene& scene, const Object& object, const std::string& where) {
   std::map<std::array<double, 3>, std::uint32_t> at;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
@@ -217,7 +221,7 @@ constexpr std::array<const char*, 4> kQuestions = {"distance", "self", "inside",
 
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 
-/// A scene of only the objects with these numbers.
+/// Returns a scene of only the objects with these numbers.
 Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bool self) {
   Scene out;
   out.name = scene.name;
@@ -239,9 +243,9 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
   return out;
 }
 
-/// A point for which "inside" is hard to decide. parameter: 0 anywhere in the box; 1 straight above
-/// or below a vertex, so that a ray along an axis hits the vertex; 2 at a vertex; 3 near the middle
-/// of a face.
+/// Returns a point for which "inside" is hard to decide. parameter: 0: anywhere in the box; 1:
+/// straight above or below a vertex, so that a ray along an axis hits the vertex; 2: at a vertex;
+/// 3: near the middle of a face.
 Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];
   const auto corners = scene.corners(object.first_triangle + draws.below(object.triangle_count));
@@ -268,8 +272,8 @@ SuiteQuestion about(SuiteQuestionKind kind, const SuiteMesh& mesh,
   return out;
 }
 
-/// Whether the object meets itself; empty if two of its vertices are at one position: then
-/// triangles may be neighbours by position, but not by index.
+/// Returns whether the object meets itself. Empty if two of its vertices are at one position, since
+/// triangles may then be neighbours by position, but not by index.
 std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   try {
     return !decide_mesh(scene, where).empty();
@@ -279,8 +283,8 @@ std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   }
 }
 
-constexpr int kPoints = 24;              // per closed object
-constexpr std::size_t kDistances = 530;  // per family of pairs, as many as the small suite has
+constexpr int kPoints = 24;              // points for each closed object
+constexpr std::size_t kDistances = 530;  // pairs for each family, as in the small suite
 
 }  // namespace
 
@@ -465,7 +469,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // which() is right only for points off the mesh, so points on it are found first.
+    // which() is right only for points off the mesh, so points on the mesh are found first.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

@@ -22,14 +22,16 @@ enum class SuiteKind : std::uint8_t {
   crossing,
   coplanar,
   equal,
-  neighbours_meet,   // they share vertices, and meet in more than these and the edge between them
-  neighbours_apart,  // they share vertices, and meet only in these and that edge
+  neighbours_meet,   // neighbours that meet in more than their shared vertices and the edge between
+                     // these
+  neighbours_apart,  // neighbours that meet only in their shared vertices and the edge between
+                     // these
   unlabelled
 };
 
 /// The name in a list of pairs, such as "touch-vertex"; "?" for unlabelled.
 std::string to_string(SuiteKind kind);
-/// Whether a pair of this kind collides. Precondition: not unlabelled.
+/// True if a pair of this kind collides. Precondition: not unlabelled.
 bool collides(SuiteKind kind);
 
 /// Corner `a` (0 to 2) of the first triangle and corner `b` of the second are one vertex of a mesh.
@@ -57,7 +59,7 @@ struct SuitePairs {
 /// A colliding pair of a mesh.
 struct SuiteMeshPair {
   TrianglePair pair;         // of SuiteMesh::scene
-  std::uint32_t shared = 0;  // vertices shared by index, 0 to 3; 0 in different objects
+  std::uint32_t shared = 0;  // common vertices, 0 to 3; 0 in different objects
   auto operator<=>(const SuiteMeshPair&) const = default;
 };
 
@@ -65,7 +67,7 @@ struct SuiteMesh {
   std::string name;  // of the folder
   std::string family;
   double parameter = 0;
-  bool self = false;                 // every object is tested against itself too
+  bool self = false;                 // each object is tested against itself
   Scene scene;                       // objects "0", "1", ... in order; each with the same `self`
   std::vector<SuiteMeshPair> pairs;  // all colliding pairs, ascending, each once
 };
@@ -76,16 +78,17 @@ std::string hexadecimal(double value);
 // Two exact oracles that share no code decide each label, so that no label of the suite rests on
 // one program alone.
 
-/// How two closed triangles meet; docs/suite.md defines the kinds. Throws Error naming `where` if
-/// two oracles differ. Whether the triangles meet is decided by CGAL's predicates (verify/exact),
-/// and by integer arithmetic on 38 directions and 21 points (verify/certificate). How they meet is
-/// decided by their common points as rational numbers; CGAL's predicates (verify/contact) also
-/// decide whether they cross. Precondition: finite coordinates.
+/// Returns how two closed triangles meet; docs/suite.md defines the kinds. CGAL's predicates
+/// (verify/exact) decide whether the triangles meet, and so does integer arithmetic on 38
+/// directions and 21 points (verify/certificate). Their common points, as rational numbers, decide
+/// how they meet, and CGAL's predicates (verify/contact) decide whether they cross. Throws Error
+/// naming `where` if two oracles differ. Precondition: finite coordinates.
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::string& where);
 
-/// The kind of a pair of neighbours: whether they meet in more than their shared corners and the
-/// segments between these. By CGAL's predicates and in integers; throws Error as decide_kind().
+/// Returns the kind of a pair of neighbours: whether they meet in more than their shared corners
+/// and the segments between these. CGAL's predicates and integer arithmetic decide. Throws Error as
+/// decide_kind() does.
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
 
@@ -95,10 +98,10 @@ SuiteKind decide(const SuitePair& pair, const std::string& where);
 /// Every pair of corners at equal positions, ascending.
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// All colliding pairs of a mesh, ascending: a box join and CGAL's predicates find them, and the
-/// checker of certificates proves the list with integers alone. Throws Error naming `where` if the
-/// checker does not prove it. Also throws Error if an object that is tested against itself has two
-/// vertices at one position: their triangles would be neighbours by position, but not by index.
+/// Returns all colliding pairs of a mesh, ascending. A box join and CGAL's predicates find them.
+/// The checker of certificates proves the list with integers alone. Throws Error naming `where` if
+/// the checker does not prove it. Also throws Error if an object that is tested against itself has
+/// two vertices at one position: their triangles would be neighbours by position, but not by index.
 std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& where);
 
 // ---- questions beyond "which triangles collide" ----
@@ -123,28 +126,30 @@ struct SuiteQuestions {
 /// The text of a file of questions.
 std::string questions_text(const SuiteQuestions& questions);
 
-/// Asks for the distances of the first pairs of a family, as many as the small suite has. Pairs
-/// with shared corners are left out.
+/// Returns questions for the distances of the first pairs of a family. There are as many as in the
+/// small suite. Pairs with shared corners are left out.
 SuiteQuestions questions_of(const SuitePairs& pairs);
-/// Questions about the objects of a mesh: whether each meets itself; for closed ones, also whether
-/// points are inside and whether two clash. There is no question where the oracles cannot decide.
+/// Returns questions about the objects of a mesh: whether an object meets itself, and for closed
+/// objects, whether points are inside and whether two objects clash. Leaves out what the oracles
+/// cannot decide.
 SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 
-// As above, two programs that share no code decide each label. Throws Error naming `where` if they
-// differ.
+// These functions decide labels of questions. Two programs that share no code decide each label.
+// The functions throw Error naming `where` if the two programs differ.
 
-/// "LOW,HIGH": the distance of two triangles lies between these doubles, which are equal or
-/// neighbours. Found in exact fractions (verify/closest.h), and in integers by the directions of
-/// the certificate checker.
+/// Returns "LOW,HIGH": equal or neighbouring doubles, between which the distance of the triangles
+/// lies. One program computes with exact fractions (verify/closest.h), the other with integers and
+/// the directions of the certificate checker.
 std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
-/// Whether each point is in the closed object 0 of the scene or on its surface. Found by rays in
-/// rational numbers (verify/inside.h), and in integers (verify/certificate/integer_distance.h).
+/// Returns for each point whether it is inside the closed object 0 of the scene or on its surface.
+/// One program uses rays in rational numbers (verify/inside.h), the other integers
+/// (verify/certificate/integer_distance.h).
 std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
                                 const std::string& where);
-/// Whether the insides of the closed objects 0 and 1 overlap. True if a point is found that is
-/// inside both; the oracles of decide_inside() check it. False if an axis-aligned plane lies
-/// between the objects. Empty if neither is found.
+/// Returns whether the insides of the closed objects 0 and 1 overlap. True if a point inside both
+/// objects is found; the oracles of decide_inside() check the point. False if an axis-aligned plane
+/// lies between the objects. Empty if neither such a point nor such a plane is found.
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Makes and writes a suite. Pairs are decided on all cores; each result has its own place, so they
-// are in the order of their IDs.
+// Makes and writes a suite. Pairs are decided on all cores. Each result has its own place, so the
+// results are in the order of their IDs.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Pairs per family. All 19 families together have 10070 (small) or 1007000 (full).
+/// Returns the number of pairs of each family. All 19 families together have 10070 pairs (small) or
+/// 1007000 pairs (full).
 std::uint64_t pair_count(SuiteSize size) { return size == SuiteSize::small ? 530 : 53000; }
 
 std::size_t members(const MeshFamily& family, SuiteSize size) {
@@ -62,7 +63,7 @@ std::string colliding_text(const SuiteMesh& mesh) {
   return out;
 }
 
-/// The line of one pair, without its newline.
+/// Returns the line of one pair, without a newline.
 std::string pair_line(const SuitePair& pair) {
   std::string shared;
   for (const auto& [i, j] : pair.shared)
@@ -89,7 +90,7 @@ std::string pairs_text(const SuitePairs& pairs) {
   return out;
 }
 
-/// The text of suite.txt; `index.sum` is not used.
+/// Returns the text of suite.txt, with the sum of this text. Does not use `index.sum`.
 std::string index_text(const SuiteIndex& index) {
   std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
                                 index.size, index.licence);
@@ -100,7 +101,7 @@ std::string index_text(const SuiteIndex& index) {
   return out + "sum " + sha256(out) + "\n";
 }
 
-/// The sum in the last line of suite.txt.
+/// Returns the sum in the last line of suite.txt.
 std::string sum_of(const std::string& text) {
   constexpr std::size_t kLine = 4 + 64 + 1;  // "sum ", SHA-256, newline
   return text.size() > kLine ? text.substr(text.size() - 65, 64) : "";

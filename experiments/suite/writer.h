@@ -22,12 +22,12 @@ struct SuiteIndex {
   std::uint64_t seed = 0;
   std::string size;  // small or full
   std::string licence;
-  std::vector<File> files;  // by path, ascending; read_suite() leaves them out
-  std::string sum;          // SHA-256 of all lines but the last: it names the whole suite
+  std::vector<File> files;  // by path, ascending; read_suite() leaves this empty
+  std::string sum;          // SHA-256 of all lines but the last; identifies the suite
 };
 
-/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the sum is not that of the lines.
-/// ask.py compares the files.
+/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the lines have another sum. Does
+/// not check the files; ask.py does.
 SuiteIndex read_suite(const std::string& folder);
 
 struct SuiteSettings {
@@ -39,10 +39,10 @@ struct SuiteSettings {
 struct SuiteCounts {
   std::string name;                       // of the family, or of the mesh
   std::uint64_t triangles = 0;            // of a mesh; 0 for a family of pairs
-  std::uint64_t pairs = 0;                // of a family; of a mesh only colliding ones
-  std::uint64_t colliding = 0;            // of a mesh the same as `pairs`
-  std::uint64_t neighbours = 0;           // of the colliding pairs of a mesh
-  std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
+  std::uint64_t pairs = 0;                // of a mesh, only colliding pairs
+  std::uint64_t colliding = 0;            // of a mesh, equal to `pairs`
+  std::uint64_t neighbours = 0;           // colliding pairs of a mesh that are neighbours
+  std::array<std::uint64_t, 10> kinds{};  // number of each SuiteKind; of a mesh, all 0
 };
 
 /// Everything that was written.
@@ -52,24 +52,25 @@ struct SuiteSummary {
   std::vector<SuiteCounts> meshes;
 };
 
-/// The counts of a family and of a mesh.
 SuiteCounts counts_of(const SuitePairs& pairs);
 SuiteCounts counts_of(const SuiteMesh& mesh);
 
-/// Pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends only on the seed, the
-/// name of the family and the ID. So any part of a suite can be made alone, and the number of
-/// threads changes nothing.
+/// Returns pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends only on the
+/// seed, the name of the family and the ID. So any part of a suite can be made alone, and the
+/// number of threads changes nothing.
 SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id);
-/// The pairs of a family of this suite, decided, in the order of their IDs. Throws Error naming the
-/// family and the pair if two oracles disagree, std::logic_error if there is no such family.
+/// Returns the pairs of a family of this suite with their labels, in the order of their IDs. Throws
+/// Error naming the family and the pair if two oracles disagree. Throws std::logic_error if there
+/// is no such family.
 SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings);
 /// The names of the meshes of this suite, such as "cloth-1", ascending.
 std::vector<std::string> mesh_names(SuiteSize size);
-/// A mesh of this suite with its colliding pairs. Throws as make_pairs().
+/// Returns a mesh of this suite with its colliding pairs. Throws as make_pairs() does.
 SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
 
-/// Makes the suite in `folder`, which must be new or empty. suite.txt comes last, so a folder
-/// without it is not whole. Throws as make_pairs(), and Error naming a path that cannot be used.
+/// Makes the suite in `folder`, which must be new or empty. suite.txt is written last, so a folder
+/// without suite.txt is incomplete. Throws as make_pairs() does. Throws Error naming a path that
+/// cannot be used.
 SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
                          const Progress& progress = {});
 

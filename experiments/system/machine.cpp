@@ -1,4 +1,4 @@
-// Reads /proc and the scheduler; locks a file.
+// Reads /proc, asks the scheduler, and locks a file.
 #include "experiments/system/machine.h"
 
 #include <fcntl.h>
@@ -27,7 +27,7 @@
 namespace farcull {
 namespace {
 
-// The value on the first line of /proc/cpuinfo that starts with one of these keys.
+// Returns the value on the first line of /proc/cpuinfo that starts with one of these keys.
 std::string cpuinfo(std::initializer_list<std::string_view> keys) {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -40,7 +40,7 @@ std::string cpuinfo(std::initializer_list<std::string_view> keys) {
   return "unknown";
 }
 
-// A value of /proc/self/status, in KiB.
+// Returns a value of /proc/self/status, in KiB.
 std::optional<double> status_kib(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -52,8 +52,8 @@ std::optional<double> status_kib(const std::string& key) {
 
 }  // namespace
 
-// Asks the scheduler: the C library counts all cores that are online, even if the process is
-// confined to fewer.
+// Asks the scheduler. The C library would count all cores that are online, even if the process is
+// confined to fewer cores.
 unsigned usable_cores() {
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof cores, &cores) != 0)
@@ -100,8 +100,8 @@ std::optional<double> PeakMemory::grown_mib() const {
 
 LoadMeter::LoadMeter() : before_(read()) {}
 
-// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks; "user" includes
-// guests.
+// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks. "user" includes the
+// time of guests.
 std::optional<LoadMeter::Ticks> LoadMeter::read() {
   cpu_set_t mine;
   if (sched_getaffinity(0, sizeof mine, &mine) != 0) return std::nullopt;
@@ -132,8 +132,8 @@ std::optional<LoadMeter::Ticks> LoadMeter::read() {
   return out;
 }
 
-// At each tick a processor is busy or not. So the number of busy ticks among n has a standard
-// deviation of at most sqrt(n) / 2.
+// At each tick a processor is either busy or idle. So the number of busy ticks among n ticks has a
+// standard deviation of at most sqrt(n) / 2.
 std::optional<Load> LoadMeter::now() const {
   const std::optional<Ticks> after = read();
   if (!before_ || !after) return std::nullopt;
@@ -166,7 +166,7 @@ TimingLock::TimingLock(const std::string& path) {
   ::fchmod(file_, 0666);
   const std::string own = std::to_string(::getpid());
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // This is no error, since the number is only for the message above.
+    // No error is thrown, since the number is only for the message above.
   }
 }
 

@@ -14,7 +14,8 @@ unsigned usable_cores();
 /// if the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
-/// The model and the features of the CPU, from /proc/cpuinfo; "unknown" if the file does not say.
+/// These return the model and the features of the CPU, from /proc/cpuinfo, or "unknown" if that
+/// file does not say.
 std::string cpu_model();
 std::string cpu_features();
 
@@ -37,15 +38,16 @@ struct Load {
   bool beyond(double limit) const { return share - error > limit; }
 };
 
-/// The load since construction: the time in which these processors were busy (/proc/stat, including
-/// time that a hypervisor took), less the time of this process and of its ended children. The
-/// system's load average would not do: in a container it counts the processes of all cores of the
-/// machine, and it lags by a minute.
+/// Measures the load since construction: the time in which the processors of this process were busy
+/// (/proc/stat), less the time of this process and of its ended children. Time that a hypervisor
+/// took counts as busy. The system's load average is no substitute: in a container it counts the
+/// processes of all cores of the machine, and it lags by a minute.
 class LoadMeter {
  public:
   LoadMeter();
-  /// Empty if there is no /proc/stat, or if /proc/stat lacks the time of this process (gVisor). In
-  /// a container whose /proc/stat has only its own time (lxcfs), other load is not seen.
+  /// Returns nothing if there is no /proc/stat, or if /proc/stat lacks the time of this process
+  /// (gVisor). In a container whose /proc/stat covers only that container (lxcfs), load from
+  /// outside is not seen.
   std::optional<Load> now() const;
 
  private:
@@ -61,8 +63,8 @@ class TimingLock {
  public:
   static constexpr const char* kFile = "/tmp/farcull-times.lock";
 
-  /// Throws Error naming the process that holds the lock, or the path if it cannot be opened. path:
-  /// another one in tests.
+  /// Throws Error naming the process that holds the lock, or the path if the file cannot be opened.
+  /// path: tests use another file.
   explicit TimingLock(const std::string& path = kFile);
   ~TimingLock();
   TimingLock(const TimingLock&) = delete;

@@ -21,8 +21,9 @@ namespace farcull {
 
 namespace {
 
-// The message of the signal handler. It is made beforehand, since a handler must not allocate
-// memory. There are two buffers, since the handler may read one while the other is filled.
+// `message` is what the signal handler prints. It is made beforehand, since a handler must not
+// allocate memory. There are two buffers, since the handler may read one buffer while the other
+// buffer is filled.
 std::array<std::array<char, 512>, 2> buffers;
 std::atomic<const char*> message = "farcull: interrupted; no file was written\n";
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -60,13 +61,13 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// The file that a path leads to. A regular file, or a new one, is written beside it and renamed.
-// Anything else is `direct`: the text is written to it as it comes.
+// The file that a path leads to. A regular or new file is written under another name and renamed.
+// Anything else is `direct`: the text is written to it without renaming.
 struct Target {
   std::string path;
   bool exists = false;
   bool direct = false;
-  mode_t mode = 0;  // mode of the file that exists
+  mode_t mode = 0;  // mode of an existing file
 };
 
 Target target_of(const std::string& path) {
@@ -74,7 +75,7 @@ Target target_of(const std::string& path) {
   struct stat link = {}, status = {};
   target.exists = ::stat(path.c_str(), &status) == 0;
   const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
-  // /dev/stdout is a link to standard output, perhaps a file that another program holds open.
+  // /dev/stdout is a link to standard output. That may be a file that another program holds open.
   const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
   target.mode = status.st_mode;
   target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
@@ -91,8 +92,8 @@ std::string folder_of(const std::string& path) {
 // The path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// The path of the half-written file for `path`: in the same folder, with an ending. The name is cut
-// if it is too long for the file system, but not within a UTF-8 character.
+// Returns the path of the half-written file for `path`: in the same folder, with an ending. A name
+// that is too long for the file system is cut, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
@@ -111,7 +112,8 @@ extern "C" void remove_half_written(int signal) {
 }  // namespace
 
 // The name of a file that is being written. The destructor removes the file unless put() renamed
-// it; the handler of a signal that ends the program removes it too. One at a time.
+// it. If a signal ends the program, its handler removes the file. Only one object may exist at a
+// time.
 class HalfWritten {
  public:
   // Precondition: the path fits into half_written.
@@ -144,8 +146,8 @@ class HalfWritten {
 
 namespace {
 
-// Writes all of the text, from the byte `at` of the file if `at` is not negative. Returns 0 or the
-// errno of the first failure.
+// Writes all of the text. If `at` is not negative, writes it from the byte `at` of the file on.
+// Returns 0 or the errno of the first failure.
 int write_all(int file, const std::string& text, long long at) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = at < 0 ? ::write(file, text.data() + done, text.size() - done)
@@ -298,8 +300,7 @@ void GrowingOutput::add(const std::string& text, const std::string& end) {
     return;
   }
   if (const int failure = write_all(file_, text + end, kept_)) {
-    // Restores the previous end. Its bytes are in the file already, so a full disk has room for
-    // them.
+    // Restores the previous end. The file had these bytes before, so even a full disk has room.
     (void)write_all(file_, end_, kept_);
     (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
     refuse(path_, failure);
@@ -323,8 +324,9 @@ void GrowingOutput::finish() {
 void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // A file that is opened would get the number of a closed stream, and output for the stream would
-  // be written into that file. So /dev/null takes the number, opened such that its use fails.
+  // If a standard stream is closed, the next opened file would get its number, and output for the
+  // stream would go into that file. So /dev/null takes the number. It is opened such that its use
+  // fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

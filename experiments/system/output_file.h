@@ -1,5 +1,5 @@
-// Files that appear whole or not at all; texts that grow during a long run and are whole after each
-// addition; and signals that end the program.
+// Writes files that appear complete or not at all, and texts that grow during a long run and are
+// complete after each addition. Handles signals that end the program.
 #pragma once
 
 #include <array>
@@ -14,26 +14,26 @@
 
 namespace farcull {
 
-/// Throws Error naming the path if write_output() is known to fail: no such folder, a directory, no
-/// permission, a name or path that is too long, a closed standard output. Call it before a long
-/// run, so that the run does not fail at its end.
+/// Throws Error naming the path if write_output() would certainly fail: no such folder, a
+/// directory, no permission, a name or path that is too long, a closed standard output. Call it
+/// before a long run, so that the run does not fail at its end.
 void check_output(const std::string& path);
 
-/// Writes the text to a file beside the path and renames that file; "-" is standard output. A
-/// symbolic link stays and its file is replaced; devices and pipes take the text as it comes.
-/// Throws Error naming the path if the disk, the folder or a closed pipe refuses. No half-written
-/// file is left, even if SIGINT, SIGTERM or SIGHUP ends the program meanwhile. Precondition:
-/// SIGPIPE and SIGXFSZ are ignored (prepare_output()).
+/// Writes the text to a new file beside the path, and renames the new file to the path. "-" is
+/// standard output. A symbolic link stays, and its target is replaced. Devices and pipes are
+/// written to directly. Throws Error naming the path if the disk, the folder or a closed pipe
+/// refuses. No half-written file is left, even if SIGINT, SIGTERM or SIGHUP ends the program
+/// meanwhile. Precondition: SIGPIPE and SIGXFSZ are ignored (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
 /// Takes the parts of a text in order.
 using TextSink = std::function<void(std::string_view)>;
-/// write_output() for a long text, which write(sink) passes to the sink part by part. If `write`
+/// Does the same for a long text, which write(sink) passes to the sink part by part. If `write`
 /// throws, the exception is passed on, and an existing file stays as it was.
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 
-/// Writes help, or another text whose reader may stop early (help run | head), to standard output:
-/// a closed pipe is no error. Throws Error as write_output() if the disk refuses.
+/// Writes help to standard output. A closed pipe is no error, since the reader may stop early, as
+/// in `help run | head`. Throws Error as write_output() if the disk refuses.
 void write_help(const std::string& text);
 
 /// Call once, at the start of the program. Afterwards a full disk or a closed pipe gives an error,
@@ -43,8 +43,8 @@ void prepare_output();
 /// A text that grows by additions and has an end, such as the last bracket of a JSON array. After
 /// each addition the file holds all additions and the end; only a kill or a crash of the machine
 /// during an addition can cut the text short. The first addition replaces the file as
-/// write_output() does. Standard output, devices and pipes take the additions as they come, and the
-/// end once.
+/// write_output() does. Standard output, devices and pipes get each addition at once, but the end
+/// only from finish().
 class GrowingOutput {
  public:
   /// Nothing is written before the first addition.
@@ -56,7 +56,7 @@ class GrowingOutput {
   /// Adds `text`; `end` replaces the previous end. Throws Error as write_output() does; a file is
   /// then unchanged.
   void add(const std::string& text, const std::string& end);
-  /// Ends the text: no addition may follow. The destructor calls it too, and ignores an Error.
+  /// Ends the text. No addition may follow. The destructor calls finish(), and ignores an Error.
   void finish();
 
  private:
@@ -70,12 +70,13 @@ class GrowingOutput {
 class HalfWritten;
 
 /// Writes a file beside the path; put() renames it into place. Without put() the file is removed,
-/// even if SIGINT, SIGTERM or SIGHUP ends the program. Only one may exist in a process, and
-/// write_output() must not be called meanwhile. A symbolic link stays, and its file is replaced.
+/// even if SIGINT, SIGTERM or SIGHUP ends the program. Only one StreamedOutput may exist in a
+/// process, and write_output() must not be called meanwhile. A symbolic link stays, and its target
+/// is replaced.
 class StreamedOutput {
  public:
-  /// Throws Error naming the path if it is standard output, a device or a pipe, which cannot be
-  /// replaced by renaming, or if the folder or the disk refuses.
+  /// Throws Error naming the path if renaming cannot replace it (standard output, a device or a
+  /// pipe), or if the folder or the disk refuses.
   explicit StreamedOutput(const std::string& path);
   ~StreamedOutput();
   StreamedOutput(const StreamedOutput&) = delete;
@@ -85,7 +86,7 @@ class StreamedOutput {
   void add(std::string_view text);
   /// Path of the file before put(), for a library that opens and writes the file itself.
   const std::string& half() const { return half_; }
-  /// Waits until the file is on the disk, and puts it in place. Throws Error as add() does.
+  /// Waits until the file is on the disk, and renames it to the path. Throws Error as add() does.
   void put();
 
  private:
@@ -94,8 +95,9 @@ class StreamedOutput {
   std::FILE* file_ = nullptr;
 };
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP call the handler. Signals that the caller of the
-/// program ignores (nohup) stay ignored. The destructor restores the previous handlers.
+/// While an object of this class lives, SIGINT, SIGTERM and SIGHUP call the handler. Signals that
+/// the caller of the program ignores (nohup) stay ignored. The destructor restores the previous
+/// handlers.
 class SignalGuard {
  public:
   explicit SignalGuard(void (*handler)(int)) {
@@ -125,12 +127,14 @@ class SignalGuard {
   std::array<struct sigaction, 3> before_ = {};
 };
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP print one line on standard error, "farcull:
-/// interrupted: after DONE of WANTED WHAT; END", and then end the program. An object with counts
-/// may live inside one without counts; there are no others.
+/// While an object of this class lives, SIGINT, SIGTERM and SIGHUP print one line on standard
+/// error, "farcull: interrupted: after DONE of WANTED WHAT; END", and then end the program. An
+/// object with counts may be created while an object without counts lives. No other two objects may
+/// live at once.
 class Interruptible {
  public:
-  /// Without counts: "farcull: interrupted; no file was written", or how many were.
+  /// Without counts, the line is "farcull: interrupted; no file was written", or it says how many
+  /// files were written.
   Interruptible();
   ~Interruptible();
   /// The texts must outlive this object. terminal: clears the line of progress first.

@@ -13,7 +13,8 @@
 
 namespace farcull {
 
-/// The Python to run: $FARCULL_PYTHON, else Debian's (for Debian's packages), else that in PATH.
+/// Returns the Python to run: $FARCULL_PYTHON if set, else /usr/bin/python3, since Debian's
+/// packages are for it, else python3 in PATH.
 inline std::string python() {
   const char* const named = std::getenv("FARCULL_PYTHON");
   constexpr const char* kUsual = "/usr/bin/python3";
@@ -22,8 +23,8 @@ inline std::string python() {
                                             : "python3";
 }
 
-/// The folder of the Python program that writes reports and figures: the one that FARCULL_REPORT
-/// names, the one installed beside this program, or that of the source tree.
+/// Returns the folder of the Python program that writes reports and figures: the folder that
+/// FARCULL_REPORT names, else the folder installed beside this program, else `of_sources`.
 inline std::string report_folder(const std::string& of_sources) {
   namespace fs = std::filesystem;
   const char* const named = std::getenv("FARCULL_REPORT");

@@ -10,7 +10,7 @@ namespace farcull {
 
 namespace {
 
-// The number of characters of a text in UTF-8: the bytes that are not continuation bytes.
+// Returns the number of characters of a text in UTF-8: its bytes without continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](unsigned char c) { return (c & 0xc0) != 0x80; }));

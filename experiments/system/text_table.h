@@ -11,8 +11,9 @@
 
 namespace farcull {
 
-/// The width of text for people, in characters: that of the stream's terminal, but at least 40. It
-/// is 100 for a file or a pipe, which get the same text everywhere.
+/// Returns the width of text for people, in characters. For a terminal this is the terminal's
+/// width, but at least 40. For a file or a pipe it is 100, so that their text is the same
+/// everywhere.
 std::size_t text_columns(std::FILE* stream = stdout);
 
 /// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it.
@@ -26,8 +27,8 @@ std::string wrapped(const std::string& text, std::size_t columns = text_columns(
 /// in further tables below, each with the columns that name a row.
 class Table {
  public:
-  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: how many columns, from
-  /// the first on, name a row.
+  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: the number of first
+  /// columns that name a row.
   explicit Table(std::string_view alignment, std::size_t keys = 1)
       : alignment_(alignment), keys_(std::min(keys, alignment.size())) {}
   /// In a table of several columns, a row of one cell is a note on the row above it.

@@ -1,4 +1,4 @@
-// Merges sorted lists: the next line of the result is the least of the next lines of all lists.
+// Merges sorted lists. The next line of the result is the smallest of the next lines of all lists.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kAgain = "run the tile again";
 
-// A record, with those of its values that the merge uses.
+// A record, and the values of the record that the merge uses.
 struct Source {
   std::string path;
   Json json;
@@ -34,7 +34,8 @@ struct Source {
               "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote");
 }
 
-// The value at a JSON pointer such as /tile/k. Throws Error if it is missing or has another type.
+// Returns the value at a JSON pointer such as /tile/k. Throws Error if the value is missing or has
+// another type.
 template <class Value>
 Value at(const Source& source, const char* place) {
   try {
@@ -77,7 +78,7 @@ Source read_record(const std::string& path) {
   return out;
 }
 
-// Refuses two records that differ in the scene or in the question.
+// Throws Error if two records differ in the scene or in the question.
 void require_alike(const Source& first, const Source& other) {
   const std::pair<const char*, const char*> places[] = {
       {"/scene", "is of another scene"},
@@ -96,7 +97,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Refuses a tile that is given twice or not at all, and triangles that are in no tile.
+// Throws Error if a tile is given twice or not at all, or if triangles are in no tile.
 void require_whole(const std::vector<Source>& sources) {
   const Source& first = sources.front();
   std::vector<const Source*> tiles(first.n, nullptr);
@@ -139,7 +140,8 @@ class List {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
-  // Reads the next row; false at the end. Throws at the end if the list is not that of the record.
+  // Reads the next row. Returns false at the end. Throws Error at the end if the list is not the
+  // list that the record describes.
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {
@@ -152,7 +154,7 @@ class List {
     return true;
   }
   const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle of a, then b
-  const std::string& line() const { return line_; }                 // without its newline
+  const std::string& line() const { return line_; }
 
   [[noreturn]] void fail(const std::string& reason) const {
     throw Error(source_->list, reason, kAgain, static_cast<long>(lines_));
@@ -191,7 +193,7 @@ class List {
   Sha256 hash_;
 };
 
-// Writes all rows in order; returns how many.
+// Writes all rows in order. Returns the number of rows.
 std::uint64_t merge_lists(const std::vector<Source>& sources, const std::string& out) {
   StreamedOutput file(out);
   std::string piece = sources.front().columns + "\n";

@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t kSample = 65536;
 
-// The sample holds the triangles whose hashed numbers end in a certain number of zero bits. That
-// number grows by one each time the sample becomes too large. So the sample depends neither on the
-// parts in which the scene is read nor on chance.
+// The sample holds the triangles whose hashed numbers have a certain number of zero bits at the
+// end. This number of bits grows by one each time the sample becomes too large. So the sample
+// depends only on the scene, not on the parts in which the scene is read.
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
@@ -48,8 +48,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// The number of cuts that are at most at + reach, rounded as in meets(). With reach 0 this is the
-// index of the tile in which `at` lies.
+// Returns the number of cuts that are at most at + reach, rounded as in meets(). With reach 0, this
+// is the index of the tile in which `at` lies.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
@@ -58,7 +58,8 @@ std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
 
 Box box_of(const Scene& scene, std::uint32_t triangle) { return grown_box(scene, triangle, 0); }
 
-// Counts the boxes that meet each tile. step_[k] is the count of tile k less that of tile k - 1.
+// Counts the boxes that meet each tile. step_[k] is the count of tile k minus the count of tile k
+// - 1.
 class Loads {
  public:
   Loads(const Cuts& cuts, double clearance)
@@ -67,7 +68,7 @@ class Loads {
     ++step_[tile_at(cuts_, box.lo[cuts_.axis])];
     --step_[tile_at(cuts_, box.hi[cuts_.axis], clearance_) + 1];
   }
-  // The count of the fullest tile, and the sum over all tiles.
+  // Returns the count of the fullest tile, and the sum of all counts.
   std::pair<std::uint64_t, std::uint64_t> most_and_all() const {
     std::pair<std::uint64_t, std::uint64_t> out;
     std::uint64_t now = 0;
@@ -180,13 +181,13 @@ class Gathering {
   Fnv1a hash_, faces_;
   TileScene out_;
   std::size_t series_ = 0;       // index in census_.sizes of the series of the next object
-  std::uint64_t of_series_ = 0;  // objects of that series before the next object
+  std::uint64_t of_series_ = 0;  // objects of this series before the next object
   std::uint64_t objects_ = 0;
-  std::vector<std::uint32_t> vertex_;  // by vertex of the part: its number in the tile, or kNone
+  std::vector<std::uint32_t> vertex_;  // the number in the tile of each vertex of the part
 };
 
-// The pairs of objects with the numbers that objects have in the part. Leaves out pairs with an
-// object outside the part, since this tile has none of their triangle pairs.
+// Returns the pairs of objects, with the numbers that the objects have in the part. Leaves out a
+// pair if one of its objects is outside the part, since the tile has no triangle pair of them.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -203,7 +204,7 @@ std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const List
 
 using Json = nlohmann::ordered_json;
 
-// The largest resident memory of this process so far.
+// Returns the largest resident memory of this process so far.
 double peak_memory_mib() {
   struct rusage usage = {};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -212,11 +213,11 @@ double peak_memory_mib() {
 
 std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
 
-// Null if the tile has no end on this side.
+// Returns null if the tile has no end on this side.
 Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
 
-// A text that identifies the ignored pairs; it is the same for all tiles. It hashes the numbers of
-// objects, since two objects may have the same name.
+// Returns a text that identifies the ignored pairs and is the same for all tiles. It hashes numbers
+// of objects, since two objects may have the same name.
 std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   if (ignored.empty()) return "";
   Fnv1a hash;
@@ -444,8 +445,8 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // Asks about a smaller scene with the same answer. It keeps at most two objects that have
-  // triangles, and one that has none.
+  // Asks about a smaller scene with the same answer. The smaller scene keeps at most two objects
+  // with triangles, and one object without triangles.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

@@ -20,11 +20,11 @@
 
 namespace farcull {
 
-// A scene that is too large for the memory is read twice. The first reading counts its triangles
-// and samples where they lie; the cuts between its tiles follow from that.
+// A scene that is too large for the memory is read twice. The first reading counts the triangles
+// and samples where they lie. The cuts between tiles follow from the sample.
 
-/// Passes the parts of a scene to its argument, one after the other and the same ones in each call.
-/// Returns the pairs of objects that the scene ignores, as stream_scene() does.
+/// Passes the parts of a scene to its argument, one after the other. Each call passes the same
+/// parts. Returns the pairs of objects that the scene ignores, as stream_scene() does.
 using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 
 /// The result of reading all parts. Memory: the boxes of at most 65,536 triangles, 16 bytes for
@@ -34,10 +34,10 @@ struct Census {
   std::string name;
   std::uint64_t objects = 0, self_objects = 0, triangles = 0;
   double clearance = 0;             // world units, see take_census()
-  std::vector<std::string> names;   // of the objects; empty if they were not asked for
+  std::vector<std::string> names;   // of the objects; empty if take_census() was to leave them out
   std::vector<ObjectPair> ignored;  // of the scene, as in_order() gives them
-  /// Boxes of all triangles if there are at most 65,536; else of a part of them, chosen by a fixed
-  /// hash of the triangles' numbers. So the same scene gives the same sample everywhere.
+  /// Boxes of all triangles if there are at most 65,536. Otherwise boxes of some triangles, chosen
+  /// by a fixed hash of the triangles' numbers. So the same scene gives the same sample everywhere.
   std::vector<Box> sample;
   /// For each series of consecutive objects with equal size_word(): the word, and how many objects.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> sizes;
@@ -65,8 +65,8 @@ struct Cuts {
 
 /// Cuts for this many tiles, by a fixed rule. On each axis, quantiles of the lower ends of the
 /// sample's boxes serve as cuts. The axis whose fullest tile meets the fewest boxes of the sample
-/// is chosen; among equal axes, the one with the smallest sum over all tiles, then the first. Only
-/// time and memory depend on the cuts. Precondition: tiles >= 1.
+/// is chosen. In a tie it is the axis with the smallest sum over all tiles, and in another tie the
+/// first axis. Only time and memory depend on the cuts. Precondition: tiles >= 1.
 Cuts choose_cuts(const Census& census, std::size_t tiles);
 
 /// "x from 1.5 to below 3".
@@ -86,10 +86,10 @@ inline constexpr std::size_t kMostTiles = 10'000;
 /// without such a triangle are left out, and so are vertices that no triangle uses.
 struct TileScene {
   Scene scene;             // with the whole scene's name
-  ListNumbers numbers;     // of its objects and triangles in the whole scene
+  ListNumbers numbers;     // numbers of the objects and triangles in the whole scene
   std::uint64_t home = 0;  // triangles whose box begins in the tile
   std::string hash;        // scene_hash() of the whole scene
-  std::string faces_hash;  // of the whole scene's source faces, not in `hash`
+  std::string faces_hash;  // hash of the whole scene's source faces, which `hash` leaves out
 };
 
 /// Reads all parts of the scene and keeps the triangles that meet the tile at the clearance of the
@@ -100,11 +100,11 @@ struct TileScene {
 TileScene gather_tile(const SceneSource& source, const Census& census, const Tile& tile);
 
 /// Describes the whole scene, of which `part` is one tile, for certificates. `part` must outlive
-/// it.
+/// the result.
 WholeScene whole_scene(const Census& census, const Tile& tile, const TileScene& part);
 
 struct TileQuestion {
-  RunOptions options;  // method boxes, without a limit; `ignored` is empty
+  RunOptions options;  // of the method `boxes`, without a limit and with an empty `ignored`
   TileNumber number = {};
   /// Returns pairs of objects to ignore in addition to those that the scene ignores. Its argument
   /// is names_of(census). No function: no such pairs.
@@ -121,13 +121,13 @@ struct TileRun {
                    // its accounting is about all pairs of the part
   std::uint64_t elsewhere = 0;           // candidates that belong to other tiles
   double read_ms = 0;                    // of both readings of the scene
-  std::vector<ObjectPair> ignored = {};  // pairs of the whole scene: its own and the question's
+  std::vector<ObjectPair> ignored = {};  // ignored pairs of the whole scene and of the question
 };
 
 /// Reads the scene twice and finds the pairs that belong to the tile. The same scene, options and
 /// number of tiles give the same cuts for every tile. Memory: O(largest part), plus that of a run
-/// on the triangles that meet the tile. Throws Error as gather_tile(), plan() and find() do,
-/// std::logic_error for another method or a limit.
+/// on the triangles that meet the tile. Throws Error as gather_tile(), plan() and find() do. Throws
+/// std::logic_error if the options have another method than `boxes`, or a limit.
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
                  const Progress& progress = {});
 
@@ -154,7 +154,7 @@ std::string tile_lines(const TileRun& run);
 
 // Joins the results of runs on all tiles of a scene.
 
-/// Whether `farcull merge` takes the file for the record of a tile: its name ends in .json.
+/// True if `farcull merge` takes the file for the record of a tile: the file's name ends in .json.
 bool is_tile_record(const std::string& path);
 
 struct MergedTiles {
@@ -165,14 +165,15 @@ struct MergedTiles {
   bool guaranteed = true;             // every tile is guaranteed to miss nothing (docs/record.md)
 };
 
-/// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists
-/// beside them, and writes the list of the whole scene to `out`: byte for byte that of one run.
-/// `out` appears only after all lists were read to their ends and found whole. The lists are merged
+/// Reads the records and lists that `farcull run --tiles K/N --json FILE --pairs LIST` wrote.
+/// Writes the list of the whole scene to `out`, byte for byte as a single run writes it. `out`
+/// appears only after all lists were read to their ends and found complete. The lists are merged
 /// while they are read, so the memory is that of the records and a buffer for each list. Throws
-/// Error naming the file if a record or a list is missing, is another kind of file, or was cut
-/// short or changed since; if a tile is given twice or not at all; if two records differ in scene,
-/// number of tiles, cuts, options, columns or commit; if the tiles do not hold all triangles of the
-/// scene; and if `out` cannot be written or is a file that is read.
+/// Error naming the file if
+/// - a record or a list is missing, is another kind of file, or was cut short or changed;
+/// - a tile is given twice or not at all, or the tiles do not hold all triangles of the scene;
+/// - two records differ in scene, number of tiles, cuts, options, columns or commit;
+/// - `out` cannot be written, or is a file that is read.
 MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Reads PLY, ASCII and binary of either byte order: the positions of `vertex`, and the index lists
-// of `face` or `tristrips`. All else is skipped.
+// Reads PLY files, ASCII or binary in either byte order. Takes the positions of the element
+// `vertex` and the index lists of `face` or `tristrips`, and skips everything else.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct TypeInfo {
   std::size_t size;  // bytes
   bool is_signed_integer;
 };
-// In the order of Type.
+// In the order of the enumerators of Type.
 constexpr std::array<TypeInfo, 8> kTypes = {{{"char", "int8", 1, true},
                                              {"uchar", "uint8", 1, false},
                                              {"short", "int16", 2, true},
@@ -39,7 +39,7 @@ bool is_integer(Type type) { return type != Type::kFloat && type != Type::kDoubl
 struct Property {
   std::string name;
   Type type = Type::kFloat;
-  std::optional<Type> count;  // set for a list: the type of its length
+  std::optional<Type> count;  // of a list: the type of its length
 };
 
 struct Element {
@@ -244,16 +244,16 @@ bool is_index_list(const Property& property) {
   return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-// The faces, which are kept until the vertices are known: the elements may come in any order.
+// Keeps the faces until the vertices are known, since the elements may come in any order.
 struct Faces {
-  std::vector<std::uint32_t> corners;  // those of all faces, one face after the other
+  std::vector<std::uint32_t> corners;  // corners of all faces, one face after the other
   std::vector<std::uint32_t> sizes;
   std::vector<long> lines;
 };
 
 /// Turns strips into triangles. Each vertex makes a triangle with the two before it. Every second
-/// triangle is reversed, so that all face the same way. -1 begins a new strip. Triangles that name
-/// a vertex twice are left out, since they only join parts of a strip.
+/// triangle is reversed, so that all face the same way. The index -1 begins a new strip. Triangles
+/// that name a vertex twice are left out, since they only join parts of a strip.
 class Strip {
  public:
   void add(std::int64_t index, long line, Faces& faces) {
@@ -335,7 +335,7 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
   bool has_faces = false;
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;  // such elements take no bytes
-    std::size_t least = 0;                     // bytes of an element if its lists are empty
+    std::size_t least = 0;                     // the fewest bytes of an element
     for (const Property& p : element.properties)
       least += body.least_bytes(p.count.value_or(p.type));
     if (element.count > body.bytes_left() / std::max<std::size_t>(least, 1)) {

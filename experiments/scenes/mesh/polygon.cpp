@@ -1,5 +1,5 @@
-// Ear clipping (Meisters: Polygons have ears, 1975). Each sign is computed with rounding, and again
-// without if a bound on the error leaves a doubt.
+// Ear clipping (Meisters: Polygons have ears, 1975). Each sign is computed in double. If a bound on
+// the error leaves the sign uncertain, it is computed again without rounding.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kMaxEarCorners = 8192;
-constexpr double kUnit = 0x1p-53;  // roundoff of one operation, relative
+constexpr double kUnit = 0x1p-53;  // relative rounding error of one operation
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 
 // A sum of products of finite doubles without rounding, in fixed point. Bit 0 is 2^-2148, the
@@ -37,8 +37,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // The number of the highest word that is not 0, and that word. Sums are compared by this key,
-  // which orders their absolute values by the leading bits.
+  // Returns the number of the highest word that is not 0, and that word. By this key, plane_of()
+  // compares the absolute values of sums; lower words do not matter.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -103,15 +103,15 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// The plane perpendicular to the axis on which the polygon's normal has its largest component, or
-// one at least half as large. The normal is rounded. If its largest component m is not certain,
-// exact areas decide.
+// Returns the plane perpendicular to an axis. The polygon's normal has its largest component on
+// this axis, or one at least half as large. The normal is rounded. If its largest component m is
+// not certain, exact areas decide.
 //
 // With n corners, a product of two differences has three roundings and is in at most 2 n sums. So
-// each of the 2 n products errs by less than (4 n + 8) kUnit of its computed value, and by kTiny /
-// 2 more if it underflows. `bound` is at least 2 e + f, where e is the error of m, and f that of
-// another component. So if m exceeds `bound`, its sign is right, and the other component is at most
-// m + f, which is less than 2 (m - e).
+// each of the 2 n products errs by less than (4 n + 8) kUnit of its computed value. If it
+// underflows, it errs by kTiny / 2 more. Let e be the error of m, and f the error of another
+// component. `bound` is at least 2 e + f. So if m exceeds `bound`, its sign is right. The other
+// component is then at most m + f, which is less than 2 (m - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
@@ -128,7 +128,7 @@ Plane plane_of(std::span<const Vec3> points) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   int sign = normal[axis] > 0 ? 1 : -1;
-  if (!(std::abs(normal[axis]) > bound)) {  // also if it is NaN
+  if (!(std::abs(normal[axis]) > bound)) {  // true if it is NaN
     std::array<ExactSum, 3> exact;
     for (int k = 0; k < 3; ++k) exact[k] = exact_area(points, (k + 1) % 3, (k + 2) % 3);
     axis =
@@ -173,9 +173,9 @@ struct Ring {
   void classify(std::uint32_t i) { reflex[i] = turn_at(i) < 0; }
   bool same(const Vec3& a, const Vec3& b) const { return a[u] == b[u] && a[v] == b[v]; }
 
-  // True if corner i is convex, and its triangle holds no reflex corner. Convex corners cannot be
-  // in it. A corner at the position of one of the triangle's corners does not count: it belongs to
-  // a seam, which joins a hole to the outline.
+  // True if corner i is convex, and the triangle of i and its two neighbours holds no reflex
+  // corner. (Convex corners need no test.) A corner at the position of one of the triangle's
+  // corners does not count, since it belongs to a seam that joins a hole to the outline.
   bool is_ear(std::uint32_t i, std::uint64_t& steps) const {
     if (turn_at(i) <= 0) return false;
     const Vec3& a = at[previous[i]];
@@ -203,8 +203,8 @@ struct Ring {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
     };
-    // The directions of the previous and the first edge: 1 rises, -1 falls, 0 means no edge yet.
-    // Edges without a length are passed over.
+    // `before` and `first` are the directions of the previous edge and the first edge: 1 rises, -1
+    // falls, 0 means no edge yet. Edges without a length are skipped.
     int falls = 0, before = 0, first = 0;
     for (std::uint32_t i = 0; i < size(); ++i) {
       const Vec3& a = at[i];
@@ -232,7 +232,7 @@ struct Ring {
     return true;
   }
 
-  // True if these triangles turn left or are degenerate, and no two overlap.
+  // True if no triangle turns right, and no two triangles overlap.
   bool whole(std::span<const Triangle> triangles) const {
     struct Extent {
       double lo, hi;
@@ -266,8 +266,9 @@ struct Ring {
 
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   // Each product has three roundings, so its relative error is at most 3 kUnit to first order. If
-  // it underflows, it errs by kTiny / 2 more. 4 kUnit cover the higher orders and the roundings of
-  // the bound. If anything overflows, the bound is infinite or NaN, and the comparison is false.
+  // it underflows, it errs by kTiny / 2 more. The factor 4 kUnit covers higher orders and the
+  // rounding of the bound. If anything overflows, the bound is infinite or NaN, and the comparison
+  // is false.
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double area = left - right;
@@ -320,8 +321,8 @@ Triangulation triangulate(std::span<const Vec3> corners, std::vector<Triangle>& 
     }
     i = ring.next[i];
   }
-  // Cuts the rest as a fan. It is a triangle or convex, or it has no ear since it is degenerate or
-  // crosses itself.
+  // Cuts the remaining polygon as a fan. It is a triangle, it is convex, or it has no ear since it
+  // is degenerate or crosses itself.
   for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k])
     triangles.push_back({i, k, ring.next[k]});
   bool whole = false;

@@ -1,4 +1,4 @@
-// Places meshes and appends them to a scene, whole or in parts; makes shapes by formula.
+// Places meshes, appends them to a scene as one object or several, and makes shapes by formula.
 #include "experiments/scenes/mesh/scene_build.h"
 
 #include <fmt/format.h>
@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
-// The rows of a rotation matrix, from a quaternion, or from axis and angle by Rodrigues' formula.
-// The diagonal of that formula is k^2 + c (1 - k^2), with 1 - k^2 written as the other two squares,
-// so that a rotation about a coordinate axis has exactly c, s, 0 and 1 in its matrix. Dividing by
-// the largest part first keeps squares from overflowing and vanishing.
+// Returns the rows of a rotation matrix, from a quaternion, or from axis and angle by Rodrigues'
+// formula. The diagonal of that formula is k^2 + c (1 - k^2). Here 1 - k^2 is written as the sum of
+// the other two squares. So a rotation about a coordinate axis has exactly c, s, 0 and 1 in its
+// matrix. Dividing by the largest part first keeps squares from overflow and underflow.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   if (rotation.quaternion) {
     auto [x, y, z, w] = *rotation.quaternion;
@@ -58,8 +58,8 @@ void transform(const std::array<Vec3, 3>& rows, std::vector<Vec3>& points) {
 }
 
 // Finds the parts of a mesh that are connected through shared vertices, and numbers them in the
-// order of their first triangles. `part` receives the part of each triangle. Returns how many there
-// are.
+// order of their first triangles. `part` receives the part of each triangle. Returns the number of
+// parts.
 std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -397,7 +397,7 @@ Mesh refined(Mesh mesh, std::uint64_t wanted) {
   while (mesh.triangles.size() < wanted && !longest.empty()) {
     const Edge edge = longest.top();
     longest.pop();
-    if (edge.squared == 0) break;  // all edges that are left have length 0
+    if (edge.squared == 0) break;  // all remaining edges have length 0
     const auto found = around.find(edge.key());
     const std::vector<std::uint32_t> of = std::move(found->second);
     around.erase(found);

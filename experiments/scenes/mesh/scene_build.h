@@ -1,4 +1,4 @@
-// Puts meshes into a scene: places them, and splits them into objects. Scene files and built-in
+// Puts meshes into a scene: places each mesh and splits it into objects. Scene files and built-in
 // scenes share this code, so that the same numbers give the same doubles. Also makes the shapes of
 // generated scenes.
 #pragma once
@@ -13,14 +13,14 @@
 
 namespace farcull {
 
-/// How points are moved: by a matrix; or by scale, then rotate, then translate, each in double and
-/// about the origin. A step that is absent or does nothing (angle 0, translation 0 along an axis)
-/// is skipped, so that an identity changes no bit, not even of -0.0.
+/// How points are moved: by a matrix, or by scaling, then rotation, then translation. Each step is
+/// computed in double and about the origin. A step that is absent or changes nothing is skipped, so
+/// an identity keeps every bit, even the sign of -0.0.
 struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
     double angle = 0;           // radians, counterclockwise seen from the tip of the axis
-    // x, y, z, w of any length but 0, in place of axis and angle
+    // x, y, z, w; any length but 0. If set, it replaces axis and angle.
     std::optional<std::array<double, 4>> quaternion = {};
   };
   // The upper three rows of a 4 x 4 matrix. If set, the other members are empty.
@@ -35,9 +35,9 @@ std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement);
 
 enum class Split {
   kNone,        // one object
-  kGroups,      // one per group that has triangles, in order of the groups
-  kComponents,  // one per set of triangles connected through shared vertices, in order of their
-                // first triangles
+  kGroups,      // an object for each group that has triangles, in order of the groups
+  kComponents,  // an object for each set of triangles connected through shared vertices, in order
+                // of the first triangles of these sets
 };
 
 /// A scene under construction.
@@ -49,12 +49,12 @@ class SceneBuilder {
   /// Appends a mesh as one object or several. Within an object triangles keep the order of the
   /// file. A part is called NAME/GROUP or NAME/1, NAME/2, ...; a mesh with a single part keeps
   /// NAME. `self`: each part is tested against itself as well. A name that is in use gets the first
-  /// free suffix "#2", "#3", .... Folded faces are named in Scene::folded. Throws Error if a placed
+  /// free suffix "#2", "#3", .... Scene::folded lists the folded faces. Throws Error if a placed
   /// coordinate is not finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split = Split::kNone,
            const Placement& placement = {}, bool self = false);
-  /// Takes out everything that was added since the last part, as a validated scene. Its names stay
-  /// in use.
+  /// Returns what was added since the previous call as a validated scene, and removes it here. The
+  /// names of its objects stay in use.
   Scene take_part();
   /// Returns the scene, validated. Nothing may be added afterwards.
   Scene finish() { return take_part(); }
@@ -73,7 +73,7 @@ class PartMaker {
  public:
   explicit PartMaker(std::span<const Vec3> vertices)
       : vertices_(vertices), number_(vertices.size(), kNone) {}
-  /// Adds a triangle to the current part. Vertices are in order of first use.
+  /// Adds a triangle to the current part, whose vertices are in order of first use.
   void add(std::array<std::uint32_t, 3> corners);
   /// Returns the part and begins the next one.
   MeshPart take();
@@ -81,8 +81,8 @@ class PartMaker {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::span<const Vec3> vertices_;
-  std::vector<std::uint32_t> number_;  // of each vertex, in the current part
-  std::vector<std::uint32_t> used_;    // vertices of the part
+  std::vector<std::uint32_t> number_;  // of each vertex: its number in the current part, or kNone
+  std::vector<std::uint32_t> used_;
   MeshPart part_;
 };
 
@@ -92,7 +92,7 @@ void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
 
-/// The box around all triangles of a Scene or a Mesh; empty without triangles.
+/// Returns the box around all triangles of a Scene or a Mesh. It is empty if there is no triangle.
 template <class Triangles>
 Box bounds(const Triangles& of) {
   Box box = Box::empty();
@@ -106,12 +106,12 @@ Vec3 centre(const Box& box);
 /// The length of the diagonal of a box that is not empty.
 double diagonal(const Box& box);
 
-/// Refines a mesh to `triangles` triangles or a few more, unless it has as many. Divides the
-/// longest edge and all its triangles, again and again (Rivara 1984). New vertices are midpoints,
-/// so the surface is unchanged up to their rounding, and a closed one stays closed. Of edges of
-/// equal length the one with the lower vertices comes first, so every run gives the same mesh. A
-/// triangle that names a vertex twice is left unchanged. The parts of a triangle keep its source
-/// face and its group. Precondition: the mesh has a triangle.
+/// Refines a mesh until it has `triangles` triangles or a few more. Each step divides the longest
+/// edge and all triangles at this edge (Rivara 1984). New vertices are midpoints, so only their
+/// rounding changes the surface, and a closed surface stays closed. Of edges of equal length, the
+/// edge with the lower vertex indices comes first, so every run gives the same mesh. A triangle
+/// that names a vertex twice is left unchanged. The parts of a triangle keep its source face and
+/// its group. Precondition: the mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
@@ -140,12 +140,13 @@ class Random : public RandomNumbers {
       if (p.squaredNorm() > 0.01) return p / p.norm();
     }
   }
-  /// A number in [2^-octaves, 1): each octave is equally likely, and the number uniform within it.
+  /// Returns a number in [2^-octaves, 1). Each octave is equally likely, and the number is uniform
+  /// in its octave.
   double over_octaves(std::uint32_t octaves) {
     const auto octave = static_cast<int>(below(octaves));
     return std::ldexp(between(0.5, 1), -octave);
   }
-  /// A random orientation at `at`.
+  /// A random rotation, then a translation by `at`.
   Placement anywhere(const Vec3& at) {
     const Vec3 axis = direction();
     return {.scale = {}, .rotate = Placement::Rotation{axis, between(-3, 3)}, .translate = at};
@@ -154,12 +155,12 @@ class Random : public RandomNumbers {
 
 using Corners = std::array<Vec3, 3>;
 
-/// A mesh whose faces are its triangles, in one group.
+/// Returns a mesh in one group, in which each triangle is a face.
 Mesh finished(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
-/// A surface of columns * rows cells, two triangles each: vertex (i, j) is at place(i, j). closed:
-/// the last column joins the first, and the last row the first row. A surface that is not closed
-/// has one vertex more in both directions.
+/// A surface of columns * rows cells of two triangles each. Vertex (i, j) is at place(i, j).
+/// closed: the last column is joined to the first column, and the last row to the first row. A
+/// surface that is not closed has (columns + 1) * (rows + 1) vertices.
 template <class Place>
 Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place& place) {
   std::vector<Vec3> vertices;
@@ -181,21 +182,21 @@ Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place
 /// Triangles that share no vertices.
 Mesh soup(const std::vector<Corners>& list);
 
-/// An icosahedron, each triangle divided into 4^level, on the unit sphere. Uses square roots only,
-/// so it is the same on every platform.
+/// The unit sphere as an icosahedron whose triangles are each divided into 4^level triangles. The
+/// only function it uses is the square root, so the mesh is the same on every platform.
 Mesh sphere(int level);
 
-/// A unit square of cells x cells cells of two triangles. Vertex i * (cells + 1) + j is at
-/// (i/cells, j/cells, 0), with i and j from 0 to `cells`.
+/// A unit square of `cells` by `cells` cells, each of two triangles. Vertex i * (cells + 1) + j is
+/// at (i/cells, j/cells, 0), with i and j from 0 to `cells`.
 Mesh grid(std::uint32_t cells);
 
-/// The corners of a square parallel to the x-y plane, counterclockwise seen from above; triangles
-/// are (0, 1, 2) and (0, 2, 3).
+/// The corners of a square parallel to the x-y plane, counterclockwise seen from above. Its
+/// triangles are (0, 1, 2) and (0, 2, 3).
 std::array<Vec3, 4> square(const Vec3& centre, double side);
 
-/// A torus about the z axis with radii `ring` and `tube`: `around` steps along the ring, `across`
-/// steps around the tube (each >= 3), 2 * around * across triangles. Vertex i * across + j is at
-/// step i along the ring and step j around the tube.
+/// A torus about the z axis with radii `ring` and `tube`. It has `around` steps along the ring and
+/// `across` steps around the tube, and so 2 * around * across triangles. Precondition: at least 3
+/// steps each way. Vertex i * across + j is at step i along the ring and step j around the tube.
 Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across);
 
 /// A sphere with bumps and dents of up to about a third of its radius.
@@ -203,10 +204,10 @@ Mesh blob(int level, Random& random);
 
 Corners shifted(Corners corners, const Vec3& by);
 
-/// A vector of this length perpendicular to another one, in a random direction.
+/// Returns a vector of length `length`, perpendicular to `along`, in a random direction.
 Vec3 across(const Vec3& along, double length, Random& random);
 
-/// A random point inside the triangle: each corner's weight is 0.2 or more.
+/// A random point inside the triangle. Its barycentric coordinates are 0.2 or more.
 Vec3 inner_point(const Corners& corners, Random& random);
 
 }  // namespace shapes

@@ -1,5 +1,5 @@
-// Reads files and tokens. zlib gets compressed data piece by piece, so that memory grows with their
-// contents, not with a length that they claim.
+// Reads files and tokens. Compressed data are decompressed piece by piece, so that memory grows
+// with the real contents, not with a length that the data claim.
 #include "experiments/scenes/mesh/text.h"
 
 #include <fmt/format.h>
@@ -26,8 +26,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' |
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The length of the UTF-8 sequence at `at`; 0 if the bytes are no valid UTF-8, such as overlong
-// forms and surrogates.
+// Returns the length of the UTF-8 sequence at `at`. Returns 0 if the bytes are not valid UTF-8, for
+// example overlong forms and surrogates.
 std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0u;
@@ -47,8 +47,8 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// For a well-formed decimal number outside the range of doubles: true if it is too small, false if
-// it is too large. Doubles reach from 5e-324 to 2e308, so the sign of the decimal exponent decides.
+// True if a decimal number outside the range of doubles is too small; false if it is too large.
+// Doubles range from 5e-324 to 2e308, so the sign of the decimal exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
   long exponent = 0;
@@ -86,7 +86,6 @@ void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
 
 constexpr const char* kWhole = "get the whole file, or compress the mesh again with gzip";
 
-// A zlib stream that reads gzip only. The destructor frees it.
 class Inflater {
  public:
   Inflater() {
@@ -188,7 +187,7 @@ std::string clean_name(std::string_view bytes) {
 }
 
 Number parse_number(std::string_view token, double& value) {
-  // from_chars takes no '+', and "+-1" is no number.
+  // from_chars does not accept '+'. "+-1" is malformed.
   if (token.starts_with('+')) {
     token.remove_prefix(1);
     if (token.starts_with('-')) return Number::kMalformed;
@@ -333,7 +332,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
   std::string_view rest = bytes;
   while (is_gzip(rest)) {
     for (int code = Z_OK; code != Z_STREAM_END;) {
-      // zlib's lengths have 32 bits.
+      // zlib takes lengths of 32 bits, so it gets at most 1 GiB at once.
       const std::string_view input = rest.substr(0, std::size_t{1} << 30);
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
       stream.avail_in = static_cast<uInt>(input.size());

@@ -1,5 +1,5 @@
-// For all readers of meshes and scenes: reads a file into one buffer, decompresses gzip (RFC 1952),
-// splits text into tokens with line numbers, and rounds each number once, to double.
+// Functions for all readers of meshes and scenes. They read a file into a buffer, decompress gzip
+// (RFC 1952), split text into tokens with line numbers, and round each number once, to double.
 #pragma once
 
 #include <cstddef>
@@ -9,27 +9,28 @@
 
 namespace farcull {
 
-/// All bytes of a regular file. Throws Error naming the path if it is missing, is a directory or a
-/// device, cannot be read, or holds more than max_bytes.
+/// Returns all bytes of a regular file. Throws Error naming the path if the file is missing, is a
+/// directory or a device, cannot be read, or holds more than max_bytes.
 std::string read_file(const std::string& path, std::uint64_t max_bytes);
 
-/// All bytes of standard input. Throws Error if it cannot be read or holds more than max_bytes.
+/// Returns all bytes of standard input. Throws Error if the input cannot be read or holds more than
+/// max_bytes.
 std::string read_standard_input(std::uint64_t max_bytes);
 
-/// A token for a message: in quotes, printable ASCII, cut after 40 characters.
+/// Returns a token for a message: in quotes, as printable ASCII, cut after 40 characters.
 std::string quote_token(std::string_view token);
 
 std::string lower_case(std::string_view text);
 
-/// The bytes as UTF-8 without control characters: each offending byte is replaced by '?'. So a name
-/// can go into JSON.
+/// Returns the bytes as UTF-8 without control characters, so that a name can go into JSON. Replaces
+/// control characters and bytes that are not UTF-8 by '?'.
 std::string clean_name(std::string_view bytes);
 
 enum class Number { kOk, kMalformed, kNotFinite };
 
 /// Reads a whole token as a decimal number, correctly rounded; a leading '+' is accepted. A number
-/// that underflows becomes the nearest double (0 included). NaN, infinity and overflow are
-/// kNotFinite. value is set only with kOk.
+/// that underflows becomes the nearest double (0 included). Returns kNotFinite for NaN, infinity
+/// and overflow. Sets `value` only if it returns kOk.
 Number parse_number(std::string_view token, double& value);
 
 /// A cursor over the lines and tokens of a text. The text and the name must outlive it. Blanks
@@ -38,17 +39,17 @@ Number parse_number(std::string_view token, double& value);
 class TextReader {
  public:
   struct Rules {
-    char comment = '\0';        // begins a comment, before a token; '\0': there are no comments
+    char comment = '\0';        // begins a comment where a token may begin; '\0': no comments
     bool continuation = false;  // a backslash before the end of a line joins the next line to it
   };
 
   TextReader(std::string_view text, std::string_view name, Rules rules);
 
-  /// Moves to the next line that holds a token; false at the end of the text.
+  /// Moves to the next line that holds a token. Returns false at the end of the text.
   bool next_line();
-  /// Moves to the next token, on this line or a later one; false at the end of the text.
+  /// Moves to the next token, on this line or a later line. Returns false at the end of the text.
   bool seek();
-  /// The next token of the current line; empty at its end.
+  /// Returns the next token of the current line, or an empty one at the end of the line.
   std::string_view token();
   /// The tokens that are left on the line, joined by single spaces.
   std::string rest();
@@ -57,7 +58,7 @@ class TextReader {
   /// The next token of the line as a double; NaN if no finite double can hold the number. Throws
   /// Error that calls the number `what`.
   double coordinate(std::string_view what);
-  /// The next three tokens of the line as coordinate() reads them.
+  /// Reads three coordinates with coordinate().
   Vec3 point();
 
   /// The line of the token that was read last, from 1.
@@ -78,27 +79,29 @@ class TextReader {
   std::size_t at_ = 0;
   long line_ = 1;
   bool started_ = false;
-  char end_ = '\n';  // the end of a line
+  char end_ = '\n';  // the character that ends a line
 };
 
-/// True if the bytes begin as gzip data with the method "deflate" do.
+/// True if the bytes begin like gzip data that use the method "deflate".
 bool is_gzip(std::string_view bytes);
 
-/// Limits for contents, since a small gzip file can fill the memory. Contents beyond `free_bytes`
-/// are refused if they are more than `most_ratio` times as large as the file.
+/// Limits for the decompressed contents, since a small gzip file can fill the memory. Contents of
+/// more than `free_bytes` are refused if they are more than `most_ratio` times as large as the
+/// file.
 struct GzipLimits {
   std::uint64_t max_bytes = std::uint64_t{4} << 30;
   std::uint64_t free_bytes = std::uint64_t{256} << 20;
   std::uint64_t most_ratio = 100;
 };
 
-/// The contents of gzip data, of one member or of several in a row, as pigz writes them. Zeros
-/// after the last member are skipped. Throws Error naming `name` if the data are cut, damaged,
-/// followed by something else, or beyond the limits; std::bad_alloc. Precondition: is_gzip(bytes).
+/// Returns the contents of gzip data. The data may have several members in a row, as pigz writes
+/// them. Zeros after the last member are skipped. Throws Error naming `name` if the data are cut,
+/// damaged, followed by something else, or beyond the limits. Throws std::bad_alloc. Precondition:
+/// is_gzip(bytes).
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
 
-/// The bytes as gzip data of one member, without a time or a name. With the same zlib, the same
-/// bytes give the same data. Throws std::bad_alloc. Precondition: less than 2^32 bytes.
+/// Returns the bytes as gzip data of one member, without a time or a name. With the same zlib, the
+/// same bytes give the same data. Throws std::bad_alloc. Precondition: less than 2^32 bytes.
 std::string gzip(std::string_view bytes);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Merges vertices that nearly coincide, and finds out whether that would close an object.
+// Merges vertices that nearly coincide, and finds out whether merging would close an object.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,8 +17,9 @@ class NearPoints {
   // tolerance: finite, >= 0.
   explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
 
-  // Returns the number of the nearest kept point if it is at most the tolerance away (in double);
-  // of equally near points, the lowest number. Otherwise keeps p as number `own`.
+  // Returns the number of the nearest kept point whose distance, in double, is at most the
+  // tolerance. If several are equally near, returns the lowest number. If there is none, keeps p
+  // with the number `own` and returns `own`.
   std::uint32_t number(const Vec3& p, std::uint32_t own);
 
  private:
@@ -59,8 +60,8 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // turns -0.0 into 0.0
-    // With a tolerance of 0 each position is a cell. From 2^53 on several cells have one number,
-    // but different doubles are then a cell or more apart.
+    // With a tolerance of 0 each position is a cell. From 2^53 on, neighbouring cells have the same
+    // number in double; but different positions are then at least a cell apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
@@ -69,7 +70,7 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-// The edges that occur an odd number of times. Edges between equal numbers do not count.
+// Returns the edges that occur an odd number of times, without edges from a vertex to itself.
 std::vector<Edge> odd_edges(std::vector<Edge> edges) {
   std::ranges::sort(edges);
   std::vector<Edge> out;
