@@ -21,7 +21,7 @@
 
 namespace farcull {
 
-/// Moves a point p to r p + t. All finite numbers are allowed, even such as scale, shear or
+/// Moves a point p to r p + t. The numbers are finite. A motion may mirror, scale, shear and
 /// flatten.
 struct RigidMotion {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
