@@ -155,7 +155,7 @@ struct CanvasState {
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
   // True if the fragment program compares the depth of a proxy with the stored depth, read from the
   // texture. Triangles have a fixed depth, so the depth test decides before the fragment program
-  // raises the flag.
+  // raises the flag: no step reads a texture that another step draws to, and none has to wait.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }
