@@ -1,6 +1,5 @@
 // Divides work among all cores, in contiguous chunks or item by item. Runs calls that can be
-// stopped. All threads of farcull are started here, so each computes as the proofs assume
-// (core/base/floating_point.h).
+// stopped. All threads of farcull are started here and compute as core/base/floating_point.h says.
 #pragma once
 
 #include <algorithm>
@@ -99,8 +98,8 @@ class StoppableCall {
   void stop();
   /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Throws the exception of the work, if any. If the work was
-  /// stopped, this is Stopped.
+  /// Waits until the work has ended. Throws the exception of the work, or Stopped if it was
+  /// stopped.
   void finish();
 
  private:

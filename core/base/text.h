@@ -92,8 +92,7 @@ inline std::string counted(std::uint64_t n, const std::string& one, const std::s
 /// True if the stream is a terminal; false also if the stream is closed.
 bool is_terminal(std::FILE* stream);
 
-/// Returns the current width of the stream's terminal in columns. Returns 0 if the stream is no
-/// terminal or the width is unknown.
+/// Returns the columns of the stream's terminal, or 0 if it is no terminal or they are unknown.
 unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

@@ -55,8 +55,7 @@ struct Comparison {
   const NormalLanes* a_normals;  // null: normals are not compared
   const NormalLanes* b_normals;
 
-  // Appends pairs that overlap to `certain`, and pairs that touch in floats to `perhaps`.
-  // Precondition: each list has room for 272 more pairs.
+  // Appends to `certain` and to `perhaps`. Precondition: each list has room for 272 more pairs.
   HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
     const OneBox bound(b.bound);
     std::uint32_t rows = boxes::overlapping_bits(a.boxes, bound);
@@ -90,8 +89,7 @@ struct Comparison {
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
     }
   }
-  // Returns a mask of the boxes of b, from lane `from` on, that meet triangle `row` of a along the
-  // normal of this triangle.
+  // Returns a mask of b's boxes, from lane `from` on, that triangle `row` of a meets on its normal.
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -188,8 +186,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last triangle. The lane meets nothing: its box is
-    // empty.
+    // A lane without a triangle repeats the last triangle. It meets nothing: its box is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;

@@ -36,8 +36,7 @@ std::vector<std::uint32_t> join_owners(const Scene& scene);
 /// call it at once. It may change the list.
 using TakePairs = std::function<void(std::vector<TrianglePair>& some)>;
 
-/// Finds all pairs a < b of items with different owners whose closed boxes overlap, in ascending
-/// order.
+/// Finds, in ascending order, all pairs a < b with different owners and overlapping closed boxes.
 class OrderedPairs {
  public:
   /// The items are triangles. Finds pairs of different objects, and pairs inside objects marked
@@ -148,8 +147,7 @@ struct BlockPairs {
   std::size_t size() const { return between.size() + inside.size(); }
 };
 
-/// Returns the numbers of the blocks that occur in the pairs, ascending. blocks: the number of all
-/// blocks.
+/// Returns the blocks that occur in the pairs, ascending. blocks: the number of all blocks.
 std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks);
 
 /// Pairs of blocks whose boxes overlap. If two triangles are at most the clearance apart, their

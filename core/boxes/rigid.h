@@ -21,8 +21,7 @@
 
 namespace farcull {
 
-/// Moves a point p to r p + t. The numbers are finite. A motion may mirror, scale, shear and
-/// flatten.
+/// Moves a point p to r p + t. All numbers are finite; it may mirror, scale, shear and flatten.
 struct RigidMotion {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
   std::array<double, 3> t = {0, 0, 0};
