@@ -10,8 +10,7 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// line: the line of a text file, counted from 1, or 0 for none. A text may contain a parameter
-  /// as
+  /// line: the line of a text file, counted from 1, or 0 for none. A text may name a parameter as
   /// "{depth_format}" or a command as "{doctor}". The constructor replaces them by spelled().
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 

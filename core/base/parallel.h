@@ -98,8 +98,7 @@ class StoppableCall {
   void stop();
   /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Throws the exception of the work, or Stopped if it was
-  /// stopped.
+  /// Waits until the work has ended. Throws its exception, or Stopped if it was stopped.
   void finish();
 
  private:

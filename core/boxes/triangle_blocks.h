@@ -47,8 +47,7 @@ struct TriangleBlocks {
   std::uint32_t count(std::uint32_t object) const {
     return is_gathered(object) ? gathered[object].count : first[object + 1] - first[object];
   }
-  /// Returns the box of an object's block k, relative to the origin. Precondition: k <
-  /// count(object).
+  /// Returns the box of an object's block k, relative to the origin. k < count(object).
   FloatBox bound(std::uint32_t object, std::uint32_t k) const {
     return is_gathered(object) ? lanes[gathered[object].first + k].bound
                                : relative(boxes[first[object] + k], origin);

@@ -184,8 +184,7 @@ struct Step {
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that starts empty. Draws of one slot in a step are
-/// consecutive.
+/// Steps in order, on a depth buffer that starts empty. Draws of one slot are consecutive.
 /// - store: each pixel keeps the nearest depth (the entry depth of a proxy).
 /// - ask: a slot is seen if one of its fragments (exit depth of a proxy) is at or behind the stored
 ///   depth (GEQUAL). In a pixel without a stored depth, nothing is seen.

@@ -39,8 +39,7 @@ struct Fattener {
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
 
-/// Returns CULLIDE's fattener: draws the clipped triangle itself, at fixed depth. Ignores the
-/// radius.
+/// Returns CULLIDE's fattener: draws the clipped triangle itself, at fixed depth, without radius.
 Fattener raw_triangles();
 
 struct FattenCounts {
