@@ -13,10 +13,9 @@
 
 namespace farcull {
 
-/// Base64 (RFC 4648), padded, without line breaks.
+/// Returns the bytes as Base64 (RFC 4648), padded, without line breaks.
 std::string to_base64(std::span<const std::uint8_t> bytes);
-/// Decodes the output of to_base64(). Empty if to_base64() never returns `text`, for example
-/// because unused bits before the padding are not 0.
+/// Decodes the output of to_base64(). Returns empty if to_base64() cannot return `text`.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
 /// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
@@ -31,7 +30,7 @@ class Fnv1a {
     for (int byte = 0; byte < 8; ++byte, word >>= 8) add_byte(static_cast<unsigned char>(word));
   }
   std::uint64_t value() const { return hash_; }
-  /// 16 hex digits.
+  /// Returns the hash as 16 hexadecimal digits.
   std::string hex() const {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
@@ -42,11 +41,11 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate names its list of pairs by it.
+/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate has this hash of its pairs.
 class Sha256 {
  public:
   void add(std::string_view bytes);
-  /// 64 lower-case hexadecimal digits. The object must not be used afterwards.
+  /// Returns the hash as 64 lower-case hexadecimal digits. Do not use the object afterwards.
   std::string digest();
 
  private:
@@ -55,8 +54,8 @@ class Sha256 {
   std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                          0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   std::array<std::uint8_t, 64> block_{};
-  std::size_t filled_ = 0;   // bytes of block_ in use
-  std::uint64_t bytes_ = 0;  // bytes added so far
+  std::size_t filled_ = 0;   // number of bytes of block_ in use
+  std::uint64_t bytes_ = 0;  // number of bytes added so far
 };
 
 std::string sha256(std::string_view text);

@@ -1,4 +1,4 @@
-// The text of an error: where, line, reason and remedy in one sentence.
+// Writes where, line, reason and remedy of an error in one sentence.
 #include "core/base/error.h"
 
 namespace farcull {
@@ -30,7 +30,7 @@ std::string spelled(const std::string& text) {
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
     const std::string word =
         is_parameter(name) && spelling_of_program ? spelling_of_program(name) : name;
-    if (!is_parameter(name) || word.empty()) {  // such as the braces of a file's name
+    if (!is_parameter(name) || word.empty()) {  // no parameter: keeps the character
       out += text[at++];
       continue;
     }

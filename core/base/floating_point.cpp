@@ -1,7 +1,7 @@
-// Finds out how the thread computes by test operations. Their operands are volatile, so that they
-// run when the program runs. <cfenv> sets and restores the environment. In C libraries fenv_t
+// Test operations find out how the thread computes. Their operands are volatile, so that no
+// compiler computes the results. <cfenv> sets and restores the environment. In C libraries fenv_t
 // includes whether results are flushed to zero, and FE_DFL_ENV turns flushing off. If a library
-// does otherwise, the guard notices it, because it repeats the test operations.
+// does otherwise, FloatingPointGuard notices it, because it repeats the test operations.
 #include "core/base/floating_point.h"
 
 #include <array>
@@ -19,9 +19,9 @@ static_assert(0.1 != 0.1f, "farcull: -fsingle-precision-constant breaks its proo
 
 thread_local std::optional<FloatingPoint> callers;
 
-// u: the distance from 1 to the next number. Rounding to nearest takes 1 + u/4 to 1, -1 - u/4 to
-// -1, and 1 + 3u/4 to 1 + u. The first two sums identify upward and downward; the third
-// distinguishes to nearest from toward zero.
+// Let u be the distance from 1 to the next number. To nearest, 1 + u/4 is rounded to 1, -1 - u/4 to
+// -1, and 1 + 3u/4 to 1 + u. `above` and `below` identify upward and downward. `far` distinguishes
+// to nearest from toward zero.
 template <class Real>
 Rounding rounding() {
   constexpr Real kUnit = std::numeric_limits<Real>::epsilon();
@@ -38,8 +38,8 @@ Rounding rounding() {
 }
 
 // Two products show flushing. The first has normal operands and a subnormal result, the second a
-// subnormal operand and a normal result. The bits of the first result are examined, because in a
-// comparison it would be an operand, which may be flushed too.
+// subnormal operand and a normal result. The bits of the first result are examined, because a
+// comparison of floats might flush this result as an operand.
 template <class Real>
 void find_flushing(FloatingPoint& found) {
   using Limits = std::numeric_limits<Real>;
@@ -88,7 +88,7 @@ void require_proved(const std::string& where) {
 }
 
 FloatingPointGuard::FloatingPointGuard() {
-  std::feholdexcept(&before_);  // first, so that nothing traps
+  std::feholdexcept(&before_);  // turns traps off before any arithmetic
   const FloatingPoint found = floating_point();
   std::fesetenv(FE_DFL_ENV);
   try {

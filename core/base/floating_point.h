@@ -1,6 +1,6 @@
 // The floating-point environment of a thread. The proofs assume rounding to nearest, ties to even,
-// and that subnormal numbers are kept. A process may start otherwise: loading a library built with
-// -ffast-math sets flush-to-zero, and a caller may have chosen another rounding.
+// and that subnormal numbers are kept. A process may compute differently: loading a library built
+// with -ffast-math sets flush-to-zero, and a caller may have chosen another rounding.
 #pragma once
 
 #include <cfenv>
@@ -24,15 +24,15 @@ struct FloatingPoint {
 /// The floating-point environment that all proofs assume.
 inline constexpr FloatingPoint kProved;
 
-/// For example "rounds to nearest, keeps subnormals".
+/// Returns for example "rounds to nearest, keeps subnormals".
 std::string to_string(const FloatingPoint& floating_point);
 
-/// The environment of the calling thread. Test operations find it, so the same code serves every
-/// processor. May raise floating-point exceptions.
+/// Returns the environment of the calling thread. Finds it by test operations, so the same code
+/// works on every processor. May raise floating-point exceptions.
 FloatingPoint floating_point();
 
 /// Throws Error naming `where` unless the calling thread computes as kProved says. Call it after
-/// foreign code, which may have changed the environment, and before its results are used.
+/// foreign code, which may change the environment, and before using results of that code.
 void require_proved(const std::string& where);
 
 /// Sets kProved for the calling thread and turns floating-point traps off. Restores the previous
@@ -44,8 +44,8 @@ void require_proved(const std::string& where);
 /// it on memory that the guard's constructor might have changed.
 class FloatingPointGuard {
  public:
-  /// Throws Error if arithmetic shows that the setting took no effect; the environment is then as
-  /// it was before.
+  /// Throws Error if test operations show that the thread does not compute as kProved says. Then
+  /// restores the previous environment.
   FloatingPointGuard();
   ~FloatingPointGuard();
   FloatingPointGuard(const FloatingPointGuard&) = delete;
@@ -56,8 +56,8 @@ class FloatingPointGuard {
   bool outermost_ = false;
 };
 
-/// The environment of farcull's caller, as the outermost guard of the calling thread found it; if
-/// the thread has no guard, floating_point().
+/// Returns the environment that the outermost guard of the calling thread found. If the thread has
+/// no guard, returns floating_point().
 FloatingPoint callers_floating_point();
 
 }  // namespace farcull

@@ -29,9 +29,9 @@ inline float fixed(float a) { return a; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
-// Kernels use these instead of bool, ?: and global constants, because a value may be a vector with
-// one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c): the condition c of an `if`; it
-// must be the same for all lanes.
+// Kernels use these macros in place of bool, ?: and global constants, because a value may be a
+// vector with one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c) wraps the condition
+// c of an `if`. The condition must be the same for all lanes.
 #define FAR_CONSTANT const float
 #define FAR_BOOL bool
 #define FAR_SELECT(c, a, b) ((c) ? (a) : (b))

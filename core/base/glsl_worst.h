@@ -1,10 +1,10 @@
-// A device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as C++ with
-// `float` standing for Worst. A Worst is the range of all floats that some permitted rounding could
-// have given (GLSL 4.50, section 4.7.1; A4): sums, differences and products are rounded in any
-// direction; quotients err by 2.5 units in the last place, square roots by 5 (as 1 / inversesqrt);
-// operands and results below 2^-126 may be flushed to zero. A comparison is true only if it is true
-// for every choice. Include the kernel between `#define float Worst` and `#undef float`, after all
-// other headers.
+// Imitates a device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as
+// C++. A Worst replaces a float. It is the range of all floats that some permitted rounding could
+// give (GLSL 4.50, section 4.7.1; assumption A4). Sums, differences and products are rounded in any
+// direction. Quotients err by 2.5 units in the last place, square roots by 5 (as 1 / inversesqrt).
+// Operands and results below 2^-126 may be flushed to zero. A comparison is true only if it is true
+// for all floats of the ranges. Include the kernel between `#define float Worst` and `#undef
+// float`, after all other headers.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class Worst {
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
-  /// One float of the range, for a value that a kernel may choose freely, such as a direction.
+  /// Returns one float of the range. Use it for a value that a kernel may choose freely.
   friend Worst fixed(Worst a) {
     return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_)));
   }
@@ -36,7 +36,7 @@ class Worst {
                          double(a.hi_) * b.hi_};
     return rounded(*std::min_element(p, p + 4), *std::max_element(p, p + 4), 0);
   }
-  /// Precondition of the kernels: the divisor's range does not contain zero.
+  /// Precondition: the range of b does not contain zero.
   friend Worst operator/(Worst a, Worst b) {
     const double q[4] = {double(a.lo_) / b.lo_, double(a.lo_) / b.hi_, double(a.hi_) / b.lo_,
                          double(a.hi_) / b.hi_};
@@ -61,16 +61,16 @@ class Worst {
  private:
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
 
-  // a + b rounded up (`sign` 1) or down (-1): the sum rounded to nearest, or the next double if
-  // that went the other way. `lost` is the exact rounding error, by Knuth's two-sum.
+  // Returns a + b, rounded up if `sign` is 1 and down if it is -1. `s` is the sum rounded to
+  // nearest. `lost` is its exact rounding error, by Knuth's two-sum.
   static double sum(double a, double b, double sign) {
     const double s = a + b, part = s - a;
     const double lost = (a - (s - part)) + (b - part);
     return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
   }
 
-  // The smallest range of floats around [lo, hi] widened by `units` of the last place. A bound that
-  // is a float already stays exact, as correct rounding demands, unless it is flushed.
+  // Widens [lo, hi] by `units` in the last place. Returns the smallest range of floats around the
+  // result. If `units` is 0, a bound that is a float stays exact, unless it is flushed to zero.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

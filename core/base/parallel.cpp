@@ -31,8 +31,8 @@ class WorksFor {
   const std::atomic<bool>* before_;
 };
 
-// A thread that waits for work, or for its end, spins this long before it sleeps: the next step of
-// a query mostly comes sooner than a sleeping thread wakes.
+// A waiting thread spins this long before it sleeps. The next step of a query mostly comes sooner
+// than a sleeping thread would wake.
 constexpr std::chrono::microseconds kSpin{50};
 
 template <class Done>
@@ -49,8 +49,8 @@ bool spin_until(const Done& done) {
   return done();
 }
 
-// Blocks all signals in the calling thread. Threads that it starts in this scope inherit the block,
-// so signals go to threads of the caller.
+// Blocks all signals in the calling thread while the object lives. A thread started meanwhile
+// blocks them always, so only threads of farcull's caller receive signals.
 class SignalsBlocked {
  public:
 #ifndef _WIN32
@@ -73,9 +73,9 @@ struct Batch {
   void (*part)(const void*, std::size_t);
   const void* data;
   std::size_t parts;
-  const std::atomic<bool>* stop_request;  // of the calling thread
-  std::size_t next = 0;                   // guarded by the pool's mutex
-  std::atomic<std::size_t> done = 0;      // parts that have returned
+  const std::atomic<bool>* stop_request;  // the stop flag of the calling thread
+  std::size_t next = 0;                   // the next part to begin; guarded by the pool's mutex
+  std::atomic<std::size_t> done = 0;      // number of parts that have returned
 };
 
 class Pool {
@@ -102,12 +102,12 @@ class Pool {
   }
 
  private:
-  // The next part of the batch that nobody has begun; 0: all have been begun.
+  // Returns the next part of the batch that no thread has begun, or 0 if all have been begun.
   std::size_t claim_of(Batch& batch) {
     const std::lock_guard lock(mutex_);
     return batch.next < batch.parts ? claim(batch) : 0;
   }
-  // The mutex is held.
+  // Preconditions: the caller holds the mutex, and a part of the batch has not been begun.
   std::size_t claim(Batch& batch) {
     --waiting_;
     const std::size_t k = batch.next++;
@@ -115,7 +115,7 @@ class Pool {
     return k;
   }
 
-  // Starts threads until there are `count`, if the system allows. The mutex is held.
+  // Starts threads until there are `count`, if the system allows. The caller holds the mutex.
   void need_threads(std::size_t count) {
     const SignalsBlocked blocked;
     try {
@@ -124,7 +124,7 @@ class Pool {
         ++threads_;
       }
     } catch (const std::exception&) {
-      // The threads that exist do the work, at worst the caller alone.
+      // The existing threads do the work. The caller is always one of them.
     }
   }
 
@@ -141,7 +141,7 @@ class Pool {
         batch.part(batch.data, k);
       }
       lock.lock();
-      // Read before the increment: after it run_parts() may return, which destroys the batch.
+      // Read before `done` grows: once all parts are done, run_parts() may destroy the batch.
       const std::size_t parts = batch.parts;
       const bool last = batch.done.fetch_add(1) + 1 == parts;
       lock.unlock();
@@ -152,12 +152,12 @@ class Pool {
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
   std::deque<Batch*> batches_;            // batches with a part that no thread has begun
-  std::atomic<std::size_t> waiting_ = 0;  // parts that nobody has begun; changed under the mutex
+  std::atomic<std::size_t> waiting_ = 0;  // parts that no thread has begun; changed under the mutex
   std::size_t threads_ = 0;
 };
 
-// Never destroyed: its threads sleep until the process ends. A forked process has none of these
-// threads, so it makes a new pool.
+// The pool is never destroyed: its threads sleep until the process ends. A forked process has none
+// of these threads, so it makes a new pool.
 Pool& pool() {
   static std::atomic<Pool*> current = [] {
 #ifndef _WIN32

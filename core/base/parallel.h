@@ -1,6 +1,5 @@
-// Divides work among all cores, either in contiguous chunks, so that results can be joined in
-// order, or item by item. Also runs calls that can be stopped. Every thread that does work of
-// farcull starts here, so each computes as the proofs say (core/base/floating_point.h).
+// Divides work among all cores, in contiguous chunks or item by item. Runs calls that can be
+// stopped. All threads of farcull are started here and compute as core/base/floating_point.h says.
 #pragma once
 
 #include <algorithm>
@@ -17,15 +16,15 @@
 
 namespace farcull {
 
-/// Calls part(data, k) once for each k in 0 .. parts - 1: the first in the calling thread, the
-/// others in pooled threads. Those for which no pooled thread is free run in the calling thread, so
-/// calls may be nested. Returns when all have returned. `part` must not throw.
+/// Calls part(data, k) once for each k in 0 .. parts - 1, in the calling thread and in pooled
+/// threads. If no pooled thread is free, the calling thread makes all calls, so run_parts() may be
+/// nested. Returns when all calls have returned. `part` must not throw.
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
 /// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if
-/// threads are free. Inside, threads round to nearest and keep subnormals, whatever the caller's
-/// environment. No chunk may wait for another. If chunks throw, the exception of the lowest one is
-/// thrown again here.
+/// threads are free. `work` runs with rounding to nearest and with subnormals, whatever the
+/// caller's environment. No chunk may wait for another. If several calls of `work` throw, the
+/// exception of the lowest chunk is thrown again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -45,16 +44,17 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   }
 }
 
-/// As many chunks as cores (or `threads` if it is not 0), or fewer so that each has `least` items.
+/// Returns the number of chunks: `threads`, or the number of cores if `threads` is 0. Returns fewer
+/// if a chunk would have fewer than `least` items.
 inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
   const std::size_t cores =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   return std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores);
 }
 
-/// Calls work(k, memory) once for each k in 0 .. count - 1; the next k goes to any thread that is
-/// free. Each thread makes one Memory and uses it in all its calls. threads: 0 for as many as there
-/// are cores. An exception of `work` is thrown again here.
+/// Calls work(k, memory) once for each k in 0 .. count - 1. Each free thread takes the next k. Each
+/// thread makes one Memory and uses it in all its calls. threads: their number, or 0 for the number
+/// of cores. An exception of `work` is thrown again here.
 template <class Memory, class Work>
 void for_each_with_memory(std::size_t count, unsigned threads, const Work& work) {
   const std::size_t chunks = chunks_for(count, 1, threads);
@@ -94,11 +94,11 @@ class StoppableCall {
   StoppableCall(const StoppableCall&) = delete;
   StoppableCall& operator=(const StoppableCall&) = delete;
 
-  /// Asks the work to stop at its next stop_point(). The work may end before it gets there.
+  /// Asks the work to stop at its next stop_point(). The work may end without reaching one.
   void stop();
   /// Waits until the work has ended, but no longer than `most`. Returns whether it has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Throws its exception; Stopped if it was stopped.
+  /// Waits until the work has ended. Throws its exception, or Stopped if it was stopped.
   void finish();
 
  private:

@@ -23,12 +23,12 @@ class RandomNumbers {
   explicit RandomNumbers(std::uint64_t seed) : words_(seed) {}
 
   std::uint64_t word() { return words_(); }
-  /// In [0, 1), from the 53 high bits of a word.
+  /// Returns a number in [0, 1), made of the 53 high bits of a word.
   double unit() { return static_cast<double>(word() >> 11) * 0x1p-53; }
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
-  /// -1 or 1.
+  /// Returns -1 or 1.
   double sign() { return (word() & 1) != 0 ? 1 : -1; }
-  /// In 0 .. n - 1, n >= 1: a word modulo n, so not quite uniform.
+  /// Returns a word modulo n, which is not quite uniform. Precondition: n >= 1.
   template <class Integer>
   Integer below(Integer n) {
     return static_cast<Integer>(word() % static_cast<std::uint64_t>(n));

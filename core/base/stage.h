@@ -1,7 +1,7 @@
-// A stage of a run: a step that runs or is left out, and why. A plan lists the stages that are to
-// come, a trace those that have passed; both use this structure, so a run can be compared with its
-// plan. Also the callback by which a long computation reports its current step. The texts for all
-// of this are in experiments/record/stage_words.h.
+// A stage of a run is a step that runs or is left out, with the reason. A plan lists the stages
+// that will come. A trace lists the stages that have passed. Both use struct Stage, so a run can be
+// compared with its plan. By a ProgressStep a long computation reports its current step. The texts
+// of stages and steps are in experiments/record/stage_words.h.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@
 namespace farcull {
 
 enum class StageKind : std::uint8_t {
-  boxes,           // finds by boxes which triangles can take part
+  boxes,           // finds the triangles that can take part, by comparing boxes
   blocks,          // compares boxes of blocks of triangles
   setup,           // starts the device: context, shaders, threads
-  draw,            // all drawing; listed only if nothing is drawn
-  patches,         // cuts objects that are tested against themselves into owners
-  objects,         // decides whether objects are asked as a whole before their triangles
+  draw,            // stands for all drawing; listed only if nothing is drawn
+  patches,         // cuts objects that are tested against themselves into patches
+  objects,         // decides whether whole objects are tested before single triangles
   clusters,        // decides whether there is a level between objects and triangles
-  view,            // a whole view that is left out
-  fatten,          // makes the primitives of one view
+  view,            // stands for a view that is left out
+  fatten,          // makes what one view draws
   cull,            // runs the passes of one level in one view
   agreement,       // finds the triangles that every view of a round has cleared
-  further_views,   // further views, left out because few triangles are left
+  further_views,   // stands for views that are left out because few triangles are left
   further_rounds,  // rounds after the first
   offset,          // culls with a further fattener
   sweep,           // sweep and prune
@@ -37,7 +37,7 @@ enum class StageKind : std::uint8_t {
   verify,          // accounts for every pair
   read,            // reads the files
   contacts,        // finds how triangles meet
-  touch,           // decides whether objects that meet overlap
+  touch,           // decides whether two objects that touch also overlap
   depth,           // bounds the penetration depth
 };
 
@@ -48,54 +48,54 @@ enum class Unit : std::uint8_t { none, triangles, pairs };
 enum class Reason : std::uint8_t {
   none,
   full,            // the option `full`: nothing is left out
-  regions,         // n pairs of objects' boxes overlap
-  meetings,        // k such pairs are ignored, n are not; m objects are tested against themselves
-  crowded,         // too many such pairs to list; m and k as in meetings
-  block_pairs,     // boxes of n pairs of blocks overlap, in m pairs of objects (or of one and
-                   // itself); only the k pairs with a corner that moved were compared; no k: all
+  regions,         // the boxes of n pairs of objects overlap
+  meetings,        // as regions; k pairs are ignored, and m objects are tested against themselves
+  crowded,         // boxes of too many pairs of objects overlap; m and k as in meetings
+  block_pairs,     // boxes of n pairs of blocks overlap; these lie in m pairs of objects, or of an
+                   // object and itself; k pairs with a moved corner were compared (no k: all pairs)
   normal_pairs,    // as block_pairs; triangles are also compared along their normals
-  oriented_pairs,  // as block_pairs; oriented boxes of the blocks overlap too
+  oriented_pairs,  // as block_pairs, but for oriented boxes
   moved_pairs,     // as block_pairs; boxes of blocks were kept and moved with their objects
-  boxes_meet,      // boxes of n pairs of triangles overlap; other triangles take no part
-  boxes_decide_little,  // not compared: boxes of triangles would settle little or cost much
-  no_boxes_overlap,     // no objects' boxes overlap but k ignored pairs; no object has `self` set
-  no_box_pairs,         // no two triangles that could collide have boxes that overlap
+  boxes_meet,      // boxes of n pairs of triangles overlap; only these triangles take part
+  boxes_decide_little,  // boxes of triangles are not compared: too little gain or too costly
+  no_boxes_overlap,     // no boxes of objects overlap; k pairs are ignored; no object has `self`
+  no_box_pairs,         // no boxes of two triangles that could collide overlap
   no_triangle_meets,    // no triangle meets the box of another object
   nothing_to_look_at,   // boxes leave nothing to draw: no device is needed
   shaders,              // the canvas for the fattener is set up; on GL also context and shaders
-  fattener,             // n triangles are beyond the budget of `fattener` and kept
+  fattener,             // n triangles exceed the budget of `fattener` and are kept
   unresolvable,         // double arithmetic cannot resolve the region of the view in pixels
   nothing_left,         // no triangle is left
-  set_unchanged,        // what the passes store has not changed since the last visit of the view
-  passes,               // n of 2 passes ran; the stored set of a pass left out has not changed
-  few_left,             // n triangles are left, at most m, so no further view is drawn
-  few_to_test,          // n triangles are left; m or fewer are cheaper to test than to cull
-  patches_cut,          // n patches of at most m triangles
-  patches_whole,        // no object tested against itself has more than m triangles: not cut
-  few_objects,          // n objects take part, fewer than m: few objects seldom hide each other
-  rounds_given,         // n rounds were asked for
-  all_views,            // a triangle is culled if every view clears it
-  little_culled,        // the round culled n of m triangles, too few for another round
-  owners,               // every triangle is an owner of its own
-  clusters_given,       // sizes of clusters are given
-  clusters_large,       // occlusion queries, on more than n triangles
-  clusters_small,       // occlusion queries, on n triangles, at most m
-  clusters_flags,       // flags replace queries: asking about every single triangle costs nothing
-  sweep,                // boxes of n objects with m triangles overlap; k and l: see Stage
-  not_cleared,          // pairs that boxes found, without those that drawing cleared
-  join_kept,            // boxes of the triangles that are kept
-  join_patches,         // as join_kept, and boxes of all triangles inside each patch
-  join_all,             // boxes of all triangles
-  join_uneven,          // triangles lie too unevenly for blocks; a tree of boxes decides
-  join_crowded,         // boxes of too many pairs of objects overlap; a tree decides
-  join_often,           // boxes and oriented boxes of blocks overlap too often; a tree decides
-  join_many_blocks,     // boxes of more than n pairs of blocks overlap; a tree decides
-  predicates,           // exact predicates on the candidates
-  no_candidates,        // there is no candidate to decide
-  every_pair,           // every pair is accounted for
-  not_asked,            // the option `no_verify`
-  near_boxes,           // n pairs of objects; m pairs of boxes were compared
-  inside_not_asked,     // the option `inside` is no
+  set_unchanged,     // the passes would store the same triangles as in the last visit of the view
+  passes,            // n of 2 passes ran; the others would store the same triangles as before
+  few_left,          // n triangles are left (n <= m), so no further view is drawn
+  few_to_test,       // n triangles are left; m or fewer are cheaper to test than to cull
+  patches_cut,       // n patches of at most m triangles
+  patches_whole,     // no object is cut: none that is tested against itself exceeds m triangles
+  few_objects,       // n objects take part (n < m): few objects seldom hide each other
+  rounds_given,      // n rounds were asked for
+  all_views,         // a triangle is culled if every view clears it
+  little_culled,     // the round culled n of m triangles, too few for another round
+  owners,            // every triangle is an owner of its own
+  clusters_given,    // sizes of clusters are given
+  clusters_large,    // there are clusters: occlusion queries are used, on more than n triangles
+  clusters_small,    // there are no clusters: only n triangles take part (n <= m)
+  clusters_flags,    // there are no clusters: without occlusion queries they save nothing
+  sweep,             // boxes of n objects with m triangles overlap; k and l: see Stage
+  not_cleared,       // takes the pairs that boxes found, without the pairs that drawing cleared
+  join_kept,         // compares boxes of the triangles that are kept
+  join_patches,      // as join_kept; also compares boxes of all triangles inside each patch
+  join_all,          // compares boxes of all triangles
+  join_uneven,       // triangles lie too unevenly for blocks; a tree of boxes decides
+  join_crowded,      // boxes of too many pairs of objects overlap; a tree decides
+  join_often,        // boxes and oriented boxes of blocks overlap too often; a tree decides
+  join_many_blocks,  // boxes of more than n pairs of blocks overlap; a tree decides
+  predicates,        // exact predicates on the candidates
+  no_candidates,     // there is no candidate to decide
+  every_pair,        // every pair is accounted for
+  not_asked,         // the option `no_verify`
+  near_boxes,        // n pairs of objects; m pairs of boxes were compared
+  inside_not_asked,  // the option `inside` is no
   // Conditions that depend on pixels; only in a plan.
   if_more_left,   // if more than n triangles are left (n = 0: any)
   if_changed,     // if the previous round changed something
@@ -104,29 +104,29 @@ enum class Reason : std::uint8_t {
   limited,        // in a trace: the option `limit` ended the search, so not all pairs are known
 };
 
-/// Level of a stage that culls: none, objects, single triangles; any other value is the size of
-/// a cluster in triangles.
+/// Values of Stage::level: none, objects, single triangles. Any other value is the number of
+/// triangles of a cluster.
 inline constexpr std::uint32_t kNoLevel = 0, kObjectLevel = UINT32_MAX,
                                kTriangleLevel = UINT32_MAX - 1;
 
 struct Stage {
   StageKind kind = StageKind::boxes;
   std::string subject = {};        // the view or the offset; empty for setup and boxes
-  std::uint32_t level = kNoLevel;  // for cull
-  int round = 0;                   // of a visit, from 1; 0: belongs to no round
+  std::uint32_t level = kNoLevel;  // set for the kind `cull`
+  int round = 0;                   // counted from 1; 0: the stage belongs to no round
   bool ran = false;                // in a plan: it will run
-  bool depends = false;            // pixels decide, or decided, whether it runs
+  bool depends = false;            // pixels decide whether it runs
   Reason reason = Reason::none;
   std::string fattener = {};   // name of the fattener that the reason is about
   std::uint64_t n = 0, m = 0;  // numbers that the reason is about
-  // k: pairs that were ignored or compared. For a sweep: k places changed, l lists sorted anew.
+  // k: number of pairs ignored or compared. In a sweep, k places changed, and l lists were sorted.
   std::optional<std::uint64_t> k = {};
   std::uint64_t l = 0;
   double ms = 0;
   std::uint64_t in = 0, out = 0;  // what enters the stage, and what is left after it
   Unit unit = Unit::none;         // of in and out
   std::uint64_t draws = 0;        // elements drawn
-  std::uint64_t queries = 0;      // slots asked
+  std::uint64_t queries = 0;      // slots whose visibility was tested
   // How many more draws and queries plain CULLIDE's passes would take on the same live triangles.
   // Only Quick-CULLIDE and FAR save some.
   std::uint64_t draws_saved = 0;
@@ -156,7 +156,7 @@ struct ProgressStep {
   StageKind kind = StageKind::boxes;
   std::string subject = {};  // as in Stage
   int round = 0;             // as in Stage
-  std::string text = {};     // not empty: names the step, and the other members are unused
+  std::string text = {};     // names the step; if it is not empty, the other members are unused
 };
 
 /// Called before each step. May be empty.

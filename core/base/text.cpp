@@ -1,5 +1,4 @@
-// Finds misspelt words by their edit distance. Asks about a terminal by POSIX, or by the C runtime
-// and the console of Windows.
+// Finds the likely word by edit distance. Learns about a terminal from POSIX or from Windows.
 #include "core/base/text.h"
 
 #include <algorithm>
@@ -7,7 +6,7 @@
 
 #ifdef _WIN32
 #include <io.h>
-// windows.h after io.h, without its macros min and max.
+// NOMINMAX keeps windows.h from defining the macros min and max.
 #define NOMINMAX
 #include <windows.h>
 #else
@@ -18,8 +17,9 @@
 namespace farcull {
 namespace {
 
-// The least number of edits (likely_word()) that turn one word into the other (optimal string
-// alignment). apart[i][k]: edits from the first i letters of a to the first k letters of b.
+// Returns the least number of edits that turn `a` into `b` (optimal string alignment).
+// likely_word() says what an edit is. apart[i][k]: edits from the first i letters of a to the first
+// k of b.
 std::size_t letters_apart(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> apart(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   const auto same = [&](std::size_t i, std::size_t k) {

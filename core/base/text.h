@@ -26,50 +26,51 @@ std::optional<T> take_number(std::string_view& text) {
   return value;
 }
 
-/// Parses the whole `text` as one number; empty if it is anything else.
+/// Parses the whole `text` as one number. Returns empty if `text` is anything else.
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
   const std::optional<T> value = take_number<T>(text);
   return text.empty() ? value : std::nullopt;
 }
 
-/// The word of `known` that `word` is probably meant to be, or empty. It is at most two edits away,
-/// ignoring case, and fewer than half as many as `word` has letters. An edit inserts, deletes or
-/// replaces a letter, or swaps it with the next one.
+/// Returns the word of `known` that `word` probably means, or empty. The result is at most two
+/// edits from `word`, ignoring case, and there are fewer edits than half the letters of `word`. An
+/// edit inserts, deletes or replaces a letter, or swaps two neighbouring letters.
 std::string likely_word(const std::string& word, const std::vector<std::string>& known);
-/// "did you mean NAME? ", or nothing if the name is empty.
+/// Returns "did you mean NAME? ", or an empty text if the name is empty.
 inline std::string did_you_mean(const std::string& name) {
   return name.empty() ? "" : "did you mean " + name + "? ";
 }
 
-/// 1234567 as 1,234,567.
+/// Returns 1234567 as "1,234,567".
 inline std::string grouped(std::uint64_t n) {
   std::string out = std::to_string(n);
   for (std::size_t at = out.size(); at > 3;) out.insert(at -= 3, 1, ',');
   return out;
 }
 
-/// The shortest decimal text that reads back as the same double, whatever the locale.
+/// Returns the shortest decimal text that reads back as the same double, whatever the locale.
 inline std::string shortest(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// The text in one line: each control character becomes a blank.
+/// Returns the text as one line: replaces each control character by a blank.
 inline std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < ' '; }, ' ');
   return text;
 }
 
-/// The text as printable ASCII of at most `most` characters, for a message; "..." if it is longer.
+/// Returns the text as printable ASCII for a message. Cuts it after `most` characters and adds
+/// "...".
 inline std::string printable(std::string_view text, std::size_t most) {
   std::string out;
   for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
   return text.size() > most ? out + "..." : out;
 }
 
-/// The reason in a message of nlohmann-json, without its beginning such as
+/// Returns the reason in a message of nlohmann-json, without a beginning such as
 /// "[json.exception.parse_error.101] parse error at line 1, column 2: ".
 inline std::string_view json_fault(std::string_view message) {
   for (const std::string_view mark : {"] ", "column "}) {
@@ -82,7 +83,8 @@ inline std::string_view json_fault(std::string_view message) {
   return message;
 }
 
-/// A number and the words that agree with it: "1 pair", "1,234 pairs", "1 triangle is left".
+/// Returns a number and the words that agree with it: "1 pair", "1,234 pairs", "1 triangle is
+/// left".
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);
 }
@@ -90,7 +92,7 @@ inline std::string counted(std::uint64_t n, const std::string& one, const std::s
 /// True if the stream is a terminal; false also if the stream is closed.
 bool is_terminal(std::FILE* stream);
 
-/// Columns of the stream's terminal now; 0 if the stream is no terminal or its width is unknown.
+/// Returns the columns of the stream's terminal, or 0 if it is no terminal or they are unknown.
 unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// A vector of plain data whose resize() does not clear memory. For arrays that are completely
-// written right after it.
+// A vector of plain data whose resize() does not clear memory. Use it for arrays that are
+// completely written right after resize().
 #pragma once
 
 #include <memory>

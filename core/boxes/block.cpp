@@ -1,5 +1,5 @@
 // Computes bounds of triangles in registers, and converts them to floats and columns.
-// spatial_order() halves sets of boxes along the axis in which they lie farthest apart.
+// spatial_order() halves a set of boxes along the axis on which the boxes are spread most.
 #include "core/boxes/block.h"
 
 #include <ranges>
@@ -80,7 +80,7 @@ Bounds of(const Box& box) {
   return out;
 }
 
-// The box of a triangle, not grown.
+// Returns the box of a triangle, not grown.
 Bounds bounds_of(const Scene& scene, std::uint32_t triangle) {
   const auto& [p, q, r] = scene.triangles[triangle];
   Bounds out = Bounds::of(scene.vertices[p]);
@@ -94,7 +94,7 @@ FloatBox relative_box(const Bounds& bounds, double half, const Bounds& origin) {
   return of(grow(bounds.box(), half)).relative_to(origin);
 }
 
-// Writes the boxes box(0) .. box(15) to the columns of `out`, and their bound.
+// Writes the boxes box(0) .. box(15) to the columns of `out`, and the box around them to out.bound.
 template <class BoxAt>
 void fill_columns(const BoxAt& box, BlockLanes& out) {
 #ifdef __SSE2__
@@ -127,13 +127,13 @@ void fill_columns(const BoxAt& box, BlockLanes& out) {
 #endif
 }
 
-// A box to be put in order. Sides are halved, since a difference of two doubles may be infinite.
+// A box to be put in order. `half` has half sides, because a full side may be infinite in doubles.
 struct Placed {
-  std::array<double, 3> middle, half;  // half: halves of its sides
+  std::array<double, 3> middle, half;
   std::uint32_t box;
 };
 
-// The axis along which most middles lie farthest apart, and the range of their coordinates on it.
+// The axis on which the middles of the boxes are spread most, and their range [lo, hi] on it.
 struct Spread {
   std::size_t axis = 0;
   double lo = 0, hi = 0;
@@ -143,7 +143,8 @@ struct Spread {
   }
 };
 
-// The spread of a sample without the eighth at either end, so that few distant boxes do not decide.
+// Returns the spread of a sample, without an eighth of the sample at either end of each axis. So a
+// few distant boxes do not decide.
 Spread sampled_spread(std::span<const Placed> items) {
   constexpr std::size_t kMost = 32;
   const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
@@ -173,8 +174,9 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     Spread spread = sampled_spread(items);
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
-    // A box that spans the whole spread would make either part as long as the whole. Such boxes are
-    // set apart first, if they are at most half of the items (so that the depth stays logarithmic).
+    // Moves boxes that span the whole spread to the front, because such a box would enlarge either
+    // half. They are split off only if they are at most half of the items: the depth stays O(log
+    // n).
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;
@@ -185,7 +187,7 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
       items = items.subspan(large);
       at += large;
     }
-    // Split near the middle, at the end of a node of the largest height that fits the range.
+    // Splits near the middle, at a position where a tree node of the largest fitting height ends.
     std::size_t node = 1;
     while (node * kWide < items.size()) node *= kWide;
     const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;
@@ -207,7 +209,7 @@ FloatBox relative(const Box& box, const Vec3& origin) {
 }
 
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  // The three corners have bounds of their own, so that no update waits for another.
+  // Each of the three corners has its own bounds, so that the updates need not wait for each other.
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {

@@ -1,11 +1,11 @@
-// Boxes of triangles. In doubles they are grown by half the clearance, so that the boxes of two
-// triangles at the clearance or less overlap. They are also kept in floats: as columns of sixteen,
-// for lanes, and in trees over such columns. An order of boxes makes the nodes compact.
+// Boxes of triangles. Boxes in doubles are grown by half the clearance, so the boxes of two
+// triangles that are at most the clearance apart overlap. Boxes in floats are stored as columns of
+// sixteen, for lanes (vector instructions), and in trees. spatial_order() makes tree nodes compact.
 //
 // Boxes in floats are relative to a common origin and rounded. Subtraction and rounding are
-// monotone, so boxes that overlap in doubles overlap in floats; and if one float is less than
-// another, so is the double. So no margin is needed, and only boxes that touch in floats are
-// compared again in doubles.
+// monotone. So boxes that overlap in doubles overlap in floats, and no margin is needed. If boxes
+// overlap in floats and do not only touch, they overlap in doubles. So only boxes that touch in
+// floats are compared again in doubles.
 #pragma once
 
 #ifdef __SSE2__
@@ -25,13 +25,14 @@
 
 namespace farcull {
 
-/// How far to grow two boxes at the distance `clearance` so that they meet: half of it, rounded up.
+/// Returns half the clearance, rounded up: boxes this far apart meet if each is grown by the
+/// result.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
 
-/// The box grown outward by at least `half` (world units, >= 0) on every side. An empty box stays
-/// as it is, and so does any box if `half` is 0. The result is monotone in the box's coordinates.
+/// Returns the box, grown outward by at least `half` (world units, >= 0) on every side. Returns it
+/// unchanged if it is empty or `half` is 0. The result is monotone in the box's coordinates.
 inline Box grow(const Box& box, double half) {
   if (half == 0 || box.is_empty()) return box;
   Box out = box;
@@ -42,14 +43,14 @@ inline Box grow(const Box& box, double half) {
   return out;
 }
 
-/// The closed box of a triangle, grown outward by at least half the clearance on every side.
+/// Returns a triangle's closed box, grown outward by at least half the clearance on every side.
 inline Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
   const auto& [p, q, r] = scene.triangles[triangle];
   const Vec3 &a = scene.vertices[p], &b = scene.vertices[q], &c = scene.vertices[r];
   return grow({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}, half_of(clearance));
 }
 
-/// Whether the closed boxes of two triangles, each grown by `half`, overlap.
+/// True if the closed boxes of two triangles, each grown by `half`, overlap.
 inline bool boxes_meet(const Scene& scene, const TrianglePair& pair, double half) {
   const std::array<std::uint32_t, 3>&s = scene.triangles[pair.a], &t = scene.triangles[pair.b];
   const double *a = scene.vertices[s[0]].data(), *b = scene.vertices[s[1]].data(),
@@ -89,8 +90,8 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 /// The empty box, which meets nothing.
 constexpr FloatBox kNowhere = {{kInfinite, kInfinite, kInfinite, 0},
                                {-kInfinite, -kInfinite, -kInfinite, 0}};
-/// The box relative to a finite origin, rounded to finite floats, so that it never meets kNowhere.
-/// An empty box becomes kNowhere.
+/// Returns the box relative to a finite origin, rounded to finite floats. Returns kNowhere for an
+/// empty box. No other result meets kNowhere.
 FloatBox relative(const Box& box, const Vec3& origin);
 /// True iff the closed boxes share a point.
 inline bool overlap(const FloatBox& a, const FloatBox& b) {
@@ -115,7 +116,8 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// Number of boxes in a WideBoxes; also the most children of a node and triangles of a block.
+/// The number of boxes in a WideBoxes. A node has at most this many children, and a block at most
+/// this many triangles.
 constexpr std::uint32_t kWide = 16;
 
 /// Sixteen boxes as columns. Missing boxes are empty, so they meet nothing.
@@ -142,7 +144,7 @@ struct alignas(64) WideBoxes {
   }
 };
 
-/// The closed box of the triangles from .. to - 1.
+/// Returns the closed box around the triangles from .. to - 1.
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to);
 /// Writes the closed boxes of the triangles from .. to - 1 to `out`, grown outward by at least
 /// `half` (world units, >= 0) and relative to the origin.
@@ -153,27 +155,27 @@ void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, do
 struct BlockLanes {
   WideBoxes<float> boxes;
   alignas(64) std::array<std::uint32_t, kWide> triangles;
-  FloatBox bound;  // of all boxes
+  FloatBox bound;  // the box around all boxes
 };
 /// Fills `out` with these triangles and computes their boxes from the scene, grown by `half` and
-/// relative to the origin. Returns the box of all the triangles, not grown.
+/// relative to the origin. Returns the box around all these triangles, not grown.
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,
                const Vec3& origin, BlockLanes& out);
 
 constexpr int kMostLevels = 8;  // enough for 2^32 leaves
 
-/// A tree over leaves 0 .. leaves - 1. A node of height h > 0 and number k holds the nodes of
-/// height h - 1 with the numbers 16 k .. 16 k + 15, as far as there are any; their boxes are
-/// blocks[first[h - 1] + k]. The root has the height `levels` and the number 0.
+/// A tree over leaves 0 .. leaves - 1. The children of node k of height h > 0 are the nodes
+/// 16 k .. 16 k + 15 of height h - 1, as far as these exist. The boxes of the children are
+/// blocks[first[h - 1] + k]. The root is node 0 of height `levels`.
 template <class Number>
 struct BoxTree {
   std::uint64_t leaves = 0;
-  int levels = 0;                                // 0: there is no leaf, and nothing else is set
+  int levels = 0;                                // 0: there is no leaf, and no other member is set
   std::array<std::size_t, kMostLevels> first{};  // per height: index of its first block in `blocks`
-  BoxOf<Number> box = empty_box<Number>();       // of all leaves
+  BoxOf<Number> box = empty_box<Number>();       // the box around all leaves
 };
 
-/// The number of blocks of a tree with this many leaves.
+/// Returns the number of blocks of a tree with this many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
 /// Makes the tree over the boxes and writes its blocks_of_tree() blocks to blocks[at] and after.
@@ -205,10 +207,9 @@ BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Nu
   return out;
 }
 
-/// Orders boxes for a tree over them, so that neighbours in the order are close. Each cut halves
-/// the number of boxes; boxes that span most of the others come first. So a distant or huge box
-/// enlarges only the nodes that it is in. Boxes may be infinite. order: receives their indices.
-/// Takes O(n log n).
+/// Orders boxes for a tree, so that neighbours in the order are close in space. Each cut halves the
+/// number of boxes. Boxes that span most other boxes come first, so a huge box enlarges few nodes.
+/// Boxes may be infinite. order: receives the indices of the boxes. Takes O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

@@ -23,7 +23,8 @@ using OneBox = boxes::OneBox<float>;
 constexpr std::size_t kLanes = boxes::kLanes<float>;
 static_assert(kWide % kLanes == 0);
 
-// Mask of the triangles, from lane `from` on, whose normals do not separate them from the box.
+// Returns a mask of lanes, from lane `from` on. A lane is set if the normal of its triangle does
+// not separate the triangle from the box.
 HWY_INLINE hn::Mask<Numbers> near(const NormalLanes& normals, std::size_t from, const OneBox& box) {
   auto lo = hn::Zero(Numbers()), hi = lo;
   const auto add = [&](std::size_t k, hn::Vec<Numbers> low, hn::Vec<Numbers> high) {
@@ -49,12 +50,12 @@ HWY_INLINE std::uint32_t near_bits(const NormalLanes& normals, const OneBox& box
 struct Comparison {
   const BlockLanes& a;
   const BlockLanes& b;
-  const VertexBlock* a_vertices;  // null: pairs with a common vertex stay
+  const VertexBlock* a_vertices;  // null: pairs with a common vertex are kept
   const VertexBlock* b_vertices;
   const NormalLanes* a_normals;  // null: normals are not compared
   const NormalLanes* b_normals;
 
-  // Appends to `certain` and `perhaps`, which have room for 272 more pairs each.
+  // Appends to `certain` and to `perhaps`. Precondition: each list has room for 272 more pairs.
   HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
     const OneBox bound(b.bound);
     std::uint32_t rows = boxes::overlapping_bits(a.boxes, bound);
@@ -88,7 +89,7 @@ struct Comparison {
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
     }
   }
-  // Mask of the boxes of b, from lane `from` on, that meet triangle `row` of a along its normal.
+  // Returns a mask of b's boxes, from lane `from` on, that triangle `row` of a meets on its normal.
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -101,7 +102,7 @@ struct Comparison {
     return hn::And(hn::Le(lo, hn::Set(Numbers(), a_normals->hi[row])),
                    hn::Ge(hi, hn::Set(Numbers(), a_normals->lo[row])));
   }
-  // Mask of the lanes, from `from` on, that come after the row.
+  // Returns a mask of the lanes, from lane `from` on, whose numbers are above `row`.
   HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
     return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
                   hn::Set(Words(), static_cast<std::uint32_t>(row)));
@@ -172,8 +173,8 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 }
 
 std::optional<NormalMargin> normal_margin(float reach, double clearance) {
-  // Bounds the rounding error when a triangle and a box are compared, relative to `farthest`, which
-  // bounds the distance of any box corner from the origin (docs/reliability.md, "Boxes of blocks").
+  // kMargin * farthest bounds the rounding error when a triangle and a box are compared. No box
+  // corner is farther than `farthest` from the origin (docs/reliability.md, "Boxes of blocks").
   constexpr double kMargin = 0x1p-20;
   const double farthest = 1.74 * static_cast<double>(reach);  // 1.74 > sqrt(3)
   if (!(farthest >= 0x1p-60 && farthest <= 0x1p60)) return std::nullopt;
@@ -185,7 +186,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last one. It meets nothing, since its box is empty.
+    // A lane without a triangle repeats the last triangle. It meets nothing: its box is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;
@@ -206,7 +207,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
     constexpr float kLeast = 0x1p-100f;
     const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     const float inverse = square > kLeast ? 1 / std::sqrt(square) : 0;
-    std::array<float, 3> at = {0, 0, 0};  // of the corners along the normal
+    std::array<float, 3> at = {0, 0, 0};  // positions of the three corners along the normal
     for (std::size_t k = 0; k < 3; ++k) {
       out.normal[k][lane] = inverse * n[k];
       for (std::size_t c = 0; c < 3; ++c) at[c] += out.normal[k][lane] * corner[c][k][lane];

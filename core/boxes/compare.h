@@ -1,10 +1,10 @@
-// Compares two blocks of at most 16 triangles on lanes: the boxes of their triangles along the axes
-// and, where these overlap often, the triangles along their normals as well.
+// Compares the triangles of two blocks, of at most 16 triangles each, on lanes: by boxes along the
+// axes and, if boxes overlap often, also along the normals of the triangles.
 //
-// The box of a large oblique triangle reaches far from its plane. Small triangles in that box may
-// be apart from it along its normal. If two triangles have a common point, so have their images
-// under any linear map, so any direction may be compared. Normals are computed in floats, and a
-// margin covers the rounding (docs/reliability.md, "Boxes of blocks").
+// The box of a large oblique triangle reaches far from the triangle's plane. Along its normal, the
+// triangle may be apart from small triangles in its box. Any direction may be compared: if two
+// triangles have a common point, their projections on it have one. Normals are computed in floats,
+// and a margin covers the rounding (docs/reliability.md, "Boxes of blocks").
 #pragma once
 
 #include <array>
@@ -23,27 +23,28 @@ struct alignas(64) VertexBlock {
   std::array<std::array<std::uint32_t, kWide>, 3> corner;
 };
 
-/// The normals of the triangles of a block, of length 1 up to rounding or 0. [lo, hi]: the range of
-/// each triangle along its own normal, grown by a margin.
+/// The normals of the triangles of a block. A normal has length 1 up to rounding, or is 0.
+/// [lo, hi]: the range of each triangle along its own normal, grown by a margin.
 struct alignas(64) NormalLanes {
   std::array<std::array<float, kWide>, 3> normal;
   std::array<float, kWide> lo, hi;
 };
-/// reach: bounds the corners' distance from the origin. margin: how far triangles are grown.
+/// reach: bounds the distance of every corner from the origin. margin: how far triangles are grown
+/// along their normals.
 struct NormalMargin {
   float reach, margin;
 };
-/// reach: the largest |coordinate| of a triangle's box, relative to the origin. Empty if it is too
-/// large or too small for floats.
+/// Returns empty if `reach` is too large or too small for floats. reach: the largest |coordinate|
+/// of the triangles' boxes, relative to the origin.
 std::optional<NormalMargin> normal_margin(float reach, double clearance);
-/// Computes the normals of at most kWide triangles, at least one.
+/// Computes the normals of 1 to kWide triangles.
 void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, const Vec3& origin,
                   const NormalMargin& margin, NormalLanes& out);
 
 /// Pairs of triangles that a comparison finds, the smaller index first.
 struct BlockFindings {
   std::vector<TrianglePair> pairs;    // their boxes overlap
-  std::vector<TrianglePair> perhaps;  // their boxes touch in floats
+  std::vector<TrianglePair> perhaps;  // their boxes touch in floats; only doubles can decide
 };
 /// Two arrays of lanes that are indexed as one: `first`, then `second`.
 struct LaneSpans {
@@ -57,8 +58,8 @@ struct LanePair {
   std::uint32_t a, b;
   bool drops_neighbours;  // leaves out pairs that share a vertex index
 };
-/// vertices and normals: one per element of `lanes`. vertices may be empty if no pair drops
-/// neighbours. If normals is empty, only boxes are compared.
+/// Appends the findings to `out`. vertices, normals: one for each element of `lanes`. `vertices`
+/// may be empty if no pair drops neighbours. If `normals` is empty, only boxes are compared.
 void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
                     std::span<const NormalLanes> normals, std::span<const LanePair> pairs,
                     BlockFindings& out);

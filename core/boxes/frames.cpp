@@ -9,13 +9,13 @@
 namespace farcull {
 namespace {
 
-// Overlapping pairs of blocks with at least one moved block, each pair once. moved: per block,
-// whether it moved. moved_blocks: the blocks that moved, ascending.
+// Returns the overlapping pairs of blocks with at least one moved block, each pair once. moved: per
+// block, 1 if it moved. moved_blocks: the blocks that moved, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
   struct Question {
-    std::uint32_t block, of, with;  // a block of object `of`, and the other object
+    std::uint32_t block, of, with;  // a block of object `of`, to be compared with object `with`
     bool second;                    // `of` is the second object of its meeting
   };
   std::vector<Question> questions;
@@ -37,7 +37,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
       own.clear();
       pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
       for (const auto& [a, b] : own) {
-        // If both blocks moved, each finds the other, so one finding is dropped.
+        // If both blocks moved, the pair is found twice, so one finding is dropped.
         if (of == with) {
           if (!moved[b] || a <= b) found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
         } else if (!second) {
@@ -56,9 +56,9 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
   return out;
 }
 
-// The decision for a frame in which some blocks moved. Recomputes the boxes, trees and pairs of
-// these blocks. Empty if many more pairs of blocks overlap than when the blocks were made, or if
-// decide_by_meetings() decides.
+// Returns the decision for a frame in which some blocks moved. Recomputes the boxes, trees and
+// pairs of these blocks. Returns empty if decide_by_meetings() decides. Returns empty if many more
+// pairs of blocks overlap than when the blocks were made.
 std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
                                                FrameMemory& memory) {
   constexpr std::size_t kMostGrowth = 2;

@@ -1,6 +1,6 @@
-// Finds pairs with a tree of boxes, item by item, several items in parallel. The pairs of an item a
-// are those with b > a, so the result is sorted by a. If there are few owners, leaves are grouped
-// by owner, in order, and an item is only compared with leaves of later owners.
+// Finds pairs with a tree of boxes, item by item, several items in parallel. Item a gets only pairs
+// with b > a, so the result is sorted by a. If there are few owners, leaves are grouped by owner,
+// in order. Then an item is only compared with leaves of later owners.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -55,8 +55,8 @@ HWY_EXPORT(find_leaves_here);
 namespace {
 
 // Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
-// one Memory, and `find` appends to memory.pairs. flush() gives these to `take` if there are many;
-// the rest is given at the end. Returns the number of pairs.
+// one Memory, and `find` appends to memory.pairs. flush() gives memory.pairs to `take` if there are
+// many. The remaining pairs are given at the end. Returns the number of pairs given.
 template <class Memory, class Take, class Find>
 std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
                             const Take& take, const Find& find) {
@@ -79,7 +79,7 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
       }
       give(1);
     } catch (...) {
-      next = count;  // the other threads end early too
+      next = count;  // makes the other threads end early
       throw;
     }
   });
@@ -88,11 +88,11 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
 
 // With fewer items than this, a second thread to find pairs costs more than it saves.
 constexpr std::size_t kLeast = 4096;
-// About this many pairs are found at a time; they stay in caches until they are copied.
+// About this many pairs are found at a time, so that they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
-// True if owners ascend with the items and there are at most kWide. Leaves grouped by owner then
-// cost a few more nodes, but overlaps inside an owner are never examined.
+// True if owners ascend with the items and there are at most kWide owners. Then leaves are grouped
+// by owner. This costs a few more nodes, but overlaps inside an owner are never examined.
 bool are_few(std::span<const std::uint32_t> owners) {
   std::size_t changes = 0;
   for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
@@ -102,8 +102,8 @@ bool are_few(std::span<const std::uint32_t> owners) {
   return changes < kWide;
 }
 
-// Sorts distinct numbers below 64 * marks.size(). Long lists are sorted with one mark bit for each
-// number. All marks are clear before and after.
+// Sorts distinct numbers below 64 * marks.size(). To sort a long list, sets one bit of `marks` for
+// each number. All bits of `marks` are 0 before and after.
 void sort_marked(std::vector<std::uint32_t>& numbers, std::vector<std::uint64_t>& marks) {
   if (numbers.size() < marks.size() / 8) {
     std::ranges::sort(numbers);
@@ -162,8 +162,8 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
   plant(std::move(own));
 }
 
-// Drops items whose boxes overlap the box of no other owner. The box of an owner contains all of
-// its boxes, so such an item has no pair. Precondition: owners are few and ascend with the items.
+// Drops each item whose box overlaps no owner's box, except that of its own owner. Such an item has
+// no pair. An owner's box is the box around all its items. Precondition: are_few(owner_).
 void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
   std::vector<Box> of_owner;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -199,13 +199,12 @@ void OrderedPairs::plant(std::vector<Box> boxes) {
   }
   std::vector<Box> leaves(boxes.size());
   for (std::size_t k = 0; k < leaves.size(); ++k) leaves[k] = boxes[order_[k]];
-  std::vector<Box>().swap(boxes);  // the leaves hold them from here on
+  std::vector<Box>().swap(boxes);  // frees memory; `leaves` has the boxes
   blocks_.resize(blocks_of_tree(leaves.size()));
   tree_ = make_tree<double>(leaves, blocks_, 0);
 }
 
-// Replaces part.found by the items of the leaves from `least` on whose boxes overlap the box of
-// `leaf`.
+// Sets part.found to the items of all leaves >= `least` whose boxes overlap the box of `leaf`.
 void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) const {
   part.found.clear();
   const Box box = blocks_[tree_.first[0] + leaf / kWide].get(leaf % kWide);
@@ -214,8 +213,8 @@ void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) con
   for (std::uint32_t& other : part.found) other = order_[other];
 }
 
-// The first item of a later owner, if leaves are grouped by owner. Owners then ascend with the
-// items, so the result also counts the items of this owner and of earlier ones.
+// Returns the first item of a later owner. Precondition: leaves are grouped by owner. Owners then
+// ascend with the items, so the result is also the first leaf of a later owner.
 std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
   const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
   return static_cast<std::uint32_t>(behind - owner_.begin());
@@ -253,8 +252,8 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   std::vector<TrianglePair> pairs, some;
   while (!at_end() && pairs.size() <= most) {
     next(std::clamp<std::size_t>(most, 1, kPortion), some);
-    // Makes room for later pairs too, as if the remaining items had as many each. Reserves 2 to 8
-    // times what is needed, because each growth copies the list.
+    // Reserves memory for all pairs, estimated from the share of items that are done. Reserves 2 to
+    // 8 times what is needed now, because each growth copies the list.
     const std::size_t needed = pairs.size() + some.size();
     const double factor = std::clamp(1 / share(), 2.0, 8.0);
     if (needed > pairs.capacity())
@@ -304,7 +303,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
       append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
-  // Joins parts in order, up to the first incomplete one; the items after it are asked again.
+  // Joins the parts in order, up to the first incomplete part. Later items are searched again.
   bool full = false;
   for (std::size_t chunk = 0; chunk < chunks && !full; ++chunk) {
     const Part& part = parts_[chunk];
@@ -341,7 +340,7 @@ BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> region
 }
 
 void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed) {
-  std::vector<std::uint32_t> children;  // of one height whose boxes have changed; first leaves
+  std::vector<std::uint32_t> children;  // nodes of one height with changed boxes; at first leaves
   for (std::size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
     const auto behind = std::ranges::upper_bound(first_, changed[begin]);
     const auto object = static_cast<std::uint32_t>(behind - first_.begin() - 1);
@@ -353,7 +352,7 @@ void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint3
       children.push_back(leaf);
     }
     for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
-      std::size_t found = 0;  // nodes above; `children` begins with their numbers
+      std::size_t found = 0;  // number of their parents, which overwrite the front of `children`
       for (const std::uint32_t child : children) {
         const std::uint32_t node = child / kWide;
         if (found > 0 && children[found - 1] == node) continue;
@@ -386,11 +385,11 @@ namespace {
 
 // The lanes of the blocks in some pairs.
 struct Lanes {
-  std::vector<std::uint32_t> place;      // index for each block, or TriangleBlocks::kNoLanes
-  UninitializedVector<BlockLanes> more;  // indexed after those in TriangleBlocks
+  std::vector<std::uint32_t> place;  // per block: index of its lanes, or TriangleBlocks::kNoLanes
+  UninitializedVector<BlockLanes> more;  // their indices follow those of TriangleBlocks::lanes
 };
 
-// Calls work(block, its triangles) for some blocks.
+// Calls work(block, triangles of the block) for each block in `some`.
 template <class Work>
 void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
                       std::span<const std::uint32_t> some, unsigned threads, const Work& work) {
@@ -424,7 +423,7 @@ Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPair
   return out;
 }
 
-// Vertices, indexed by Lanes::place, and filled only for the blocks of these pairs.
+// Returns the vertices of blocks, indexed by Lanes::place. Fills in only the blocks of the pairs.
 UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
                                              const Lanes& lanes, std::span<const BlockPair> pairs,
                                              unsigned threads) {
@@ -440,8 +439,8 @@ UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleB
   return out;
 }
 
-// Normals, indexed by Lanes::place, and filled only for the blocks of these pairs. Empty if floats
-// cannot hold the coordinates.
+// Returns the normals of blocks, indexed by Lanes::place. Fills in only the blocks of the pairs.
+// Returns no normals if floats cannot hold the coordinates.
 UninitializedVector<NormalLanes> normals_of(const Scene& scene, const TriangleBlocks& blocks,
                                             const Lanes& lanes, const BlockPairs& pairs,
                                             double clearance, unsigned threads) {
@@ -463,7 +462,7 @@ UninitializedVector<NormalLanes> normals_of(const Scene& scene, const TriangleBl
   return out;
 }
 
-constexpr std::size_t kAtOnce = 2048;  // pairs of blocks that are compared at a time
+constexpr std::size_t kAtOnce = 2048;  // at most this many pairs of blocks are compared at a time
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Compares one box with the sixteen of a block, and with those of a tree, on the lanes of this
-// processor. Compiled once for each instruction set (hwy/foreach_target.h).
+// Compares one box with the sixteen boxes of a block, or with the boxes of a tree, on the lanes of
+// this processor. Compiled once for each instruction set (hwy/foreach_target.h).
 #if defined(FARCULL_BOXES_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_BOXES_LANES_INL_H_
 #undef FARCULL_BOXES_LANES_INL_H_
@@ -51,7 +51,7 @@ HWY_INLINE Vector<Number> column(const WideBoxes<Number>& block, std::size_t k, 
   return hn::Load(Tag<Number>(), &block.column[k][from]);
 }
 
-/// Mask of the boxes of the block, from lane `from` on, that overlap the box; touching counts.
+/// Returns a mask of the block's boxes, from lane `from` on, that overlap or touch the box.
 template <class Number>
 HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std::size_t from,
                                              const OneBox<Number>& box) {
@@ -64,7 +64,7 @@ HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std
   return hn::And(hn::And(x, y), z);
 }
 
-/// Mask of those that overlap the box and do not only touch it.
+/// As overlapping(), but without boxes that only touch the box.
 template <class Number>
 HWY_INLINE hn::Mask<Tag<Number>> overlapping_inside(const WideBoxes<Number>& block,
                                                     std::size_t from, const OneBox<Number>& box) {
@@ -76,7 +76,7 @@ HWY_INLINE hn::Mask<Tag<Number>> overlapping_inside(const WideBoxes<Number>& blo
                  along(2, box.z0, box.z1));
 }
 
-/// The mask as bits, one for each lane.
+/// Returns the mask as bits, one for each lane.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -84,7 +84,7 @@ HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8);
 }
 
-/// overlapping() for all sixteen boxes, as bits.
+/// Returns overlapping() for all sixteen boxes, as bits.
 template <class Number>
 HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
                                           const OneBox<Number>& box) {
@@ -96,8 +96,8 @@ HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
 
 using Gaps = std::array<double, kWide>;
 
-/// Sets `squares` to the squared gaps between a box and the boxes of a block. Returns as bits which
-/// of these are at most `square_limit`.
+/// Sets `squares` to the squared gaps between a box and the boxes of a block. Returns bits: bit k
+/// is set if squares[k] is at most `square_limit`.
 HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox<double>& box,
                                     double square_limit, Gaps& squares) {
   const Tag<double> n;
@@ -118,16 +118,16 @@ HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox
   return out;
 }
 
-/// Clears the lowest bit and returns its number. Precondition: there is one.
+/// Clears the lowest set bit of `bits` and returns its index. Precondition: bits != 0.
 HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
   bits &= bits - 1;
   return bit;
 }
 
-/// Calls visit(leaf) for leaves from `least` on, in an order that the tree fixes. bits_of_block(k):
-/// which children in the tree's block k to visit (leaves) or to search (nodes), as bits. Returns
-/// how many blocks were compared.
+/// Searches the tree and calls visit(leaf) for leaves >= `least`, in an order that the tree fixes.
+/// bits_of_block(k) returns bits: the search goes on only to these children in block k. Returns how
+/// many blocks were examined.
 template <class Number, class Bits, class Visit>
 HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t least,
                                     const Bits& bits_of_block, const Visit& visit) {
@@ -148,7 +148,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
       const std::uint32_t child = kWide * at.number + next_bit(bits);
       const std::uint64_t begin = std::uint64_t{child} << (4 * below);
       const std::uint64_t end = (std::uint64_t{child} + 1) << (4 * below);
-      // Skips missing boxes too, since an infinite box overlaps them.
+      // Skips leaves before `least` and missing boxes. An infinite box overlaps missing boxes.
       if (end <= least || begin >= tree.leaves) continue;
       if (below == 0) {
         visit(child);
@@ -160,7 +160,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
   return compared;
 }
 
-/// As for_leaves(), but visits only leaves whose boxes overlap `box`.
+/// Calls visit(leaf) for leaves >= `least` whose boxes overlap `box`. Returns as for_leaves().
 template <class Number, class Visit>
 HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
                                                 const WideBoxes<Number>* blocks,

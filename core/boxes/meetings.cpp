@@ -16,7 +16,7 @@ bool collides_with_itself(const Object& object) { return object.self && object.t
 
 constexpr std::size_t kMeetingsPerBlock = 8;
 
-// A part of a meeting: the blocks from .. to - 1 of its object a, and the pairs that they are in.
+// A part of a meeting: the blocks from .. to - 1 of the meeting's object a, and their pairs.
 struct MeetingPart {
   std::uint32_t meeting;
   std::uint32_t from, to;
@@ -24,8 +24,8 @@ struct MeetingPart {
 };
 constexpr std::uint32_t kBlocksOfPart = 256;
 
-// Limit of the pairs of blocks of a meeting: kPairsPerBlock for each block of its objects,
-// including blocks that overlap none.
+// Returns the limit for the pairs of blocks of a meeting: kPairsPerBlock for each block of its
+// objects, including blocks that overlap no block.
 std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectOverlap& meeting) {
   const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
   return kPairsPerBlock * (blocks.count(meeting.a) + b);
@@ -74,17 +74,17 @@ bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts
   return true;
 }
 
-// Limit of the pairs of blocks of the whole scene.
+// Returns the limit for the pairs of blocks of the whole scene.
 std::size_t most_pairs(const TriangleBlocks& blocks) {
   return kMostPairsPerBlock * blocks.ranges.size();
 }
 
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
-// Finds the pairs of blocks of each part. Gives up a meeting that exceeds its most_pairs(), and all
-// meetings if the scene exceeds its own. A meeting that is given up counts as most_pairs() + 1
-// pairs, so that the answer does not depend on threads. find(meeting, part, most): appends pairs to
-// the part, as pair_blocks().
+// Finds the pairs of blocks of each part. Gives up a meeting with more pairs than its limit. Gives
+// up all meetings if the scene has more pairs than its limit. A meeting that is given up counts as
+// its limit + 1 pairs, so that the answer does not depend on threads. find(meeting, part, most)
+// appends pairs to the part, as pair_blocks().
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
@@ -122,13 +122,13 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
 
 // Oriented boxes are used if, in a sample, they leave at most this many pairs per triangle.
 constexpr double kOrientedPerTriangle = 64;
-// Normals are compared if, in a sample, boxes along the axes leave more than kFewOverlaps pairs per
-// triangle, and normals leave at most 1 / kLeastDrop of these pairs and at most kMostLeft per
-// triangle. For a triangle, normals cost about as much as deciding two pairs exactly, and oriented
-// boxes as much as ten.
+// Normals are compared under three conditions, in a sample. Boxes along the axes leave more than
+// kFewOverlaps pairs per triangle. Normals leave at most kMostLeft pairs per triangle. Normals
+// leave at most 1 / kLeastDrop of the pairs that boxes leave. Per triangle, normals cost about as
+// much as deciding two pairs exactly, and oriented boxes as much as deciding ten.
 constexpr double kFewOverlaps = 2, kLeastDrop = 4, kMostLeft = 8;
 
-// Decides all meetings by oriented boxes of blocks. Null if these overlap too often as well.
+// Decides all meetings by oriented boxes of blocks. Returns empty if these boxes overlap too often.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
                                                const std::vector<ObjectOverlap>& meetings,
                                                std::span<const Box> regions, double clearance,
@@ -211,7 +211,7 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
 
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings) {
-  // Whether an object whose blocks are too small for floats can meet another one or itself.
+  // True if an object whose blocks are too small for floats can meet any object, or itself.
   const bool uneven =
       !blocks.stretched.empty() &&
       (meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {

@@ -26,25 +26,26 @@ struct ObjectOverlaps {
   std::vector<ObjectOverlap> all;
   std::uint64_t pairs = 0;  // number of meetings of two objects
   std::uint64_t self = 0;   // number of meetings of an object with itself
-  bool crowded = false;     // more than 8 pairs of objects per block overlap. To list them would
-                            // take more memory than the scene, so `all` is empty
+  bool crowded = false;     // `all` is empty: more than 8 pairs of objects per block overlap, and a
+                            // list of these pairs would take more memory than the scene
 };
-/// ignored: objects that are not tested against each other, as in_order() gives them.
+/// ignored: pairs of objects that are not tested against each other, as in_order() gives them.
 ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored);
 
-/// For each object, the box in which it can meet another one or itself; empty if it cannot.
+/// Returns for each object the box in which it can meet another object or itself. The box is empty
+/// if the object can meet nothing.
 std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
                                    std::span<const ObjectOverlap> meetings);
 
-/// Boxes of blocks are used if every meeting has at most this many overlapping pairs of blocks per
-/// block that is in such a pair.
+/// The limit for each meeting: overlapping pairs of blocks, divided by the number of blocks in
+/// these pairs. If a meeting exceeds it, boxes of blocks along the axes are not used.
 constexpr std::size_t kPairsPerBlock = 32;
-/// Oriented boxes of blocks are tried if, in a sample, more than this many pairs of triangles per
-/// triangle have overlapping boxes (neighbours not counted), as slivers that lie askew have.
+/// Oriented boxes of blocks are tried if a sample has more than this many overlapping pairs of
+/// triangles' boxes per triangle, without neighbours. Oblique slivers have so many.
 constexpr double kOverlapsPerTriangle = 16;
-/// Oriented boxes are not tried if more than this many pairs of blocks per block of the scene
-/// overlap.
+/// Oriented boxes are not tried if the scene has more than this many overlapping pairs of blocks
+/// per block.
 constexpr std::size_t kMostPairsPerBlock = 1024;
 
 /// How the pairs of a scene are found: by boxes of blocks, or by a tree of the boxes of all
@@ -68,24 +69,24 @@ struct BlockDecision {
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
-/// The decision of decide_by_blocks(), if the blocks and meetings alone determine it. Else null.
+/// Returns the decision of decide_by_blocks(), or empty if blocks and meetings do not determine it.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);
-/// The decision of decide_by_blocks(), if decide_by_meetings() gives none. Precondition: the blocks
-/// have their boxes or lanes. regions: as boxes_of_meetings() gives them.
+/// Returns the decision of decide_by_blocks(). Preconditions: decide_by_meetings() returned empty;
+/// the blocks have their boxes or lanes. regions: as boxes_of_meetings() gives them.
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 
-/// Estimates by a sample of the pairs of blocks how many pairs of triangles these meetings leave
-/// per triangle of their blocks, neighbours not counted. Reads only vertices of their blocks.
+/// Estimates how many pairs of triangles are left per triangle of the blocks, without neighbours.
+/// Samples pairs of blocks of the meetings, and reads only vertices of these blocks.
 double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance);
 
-/// Number of triangles in all blocks that occur in the pairs.
+/// Returns the number of triangles in all blocks that occur in the pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
-/// All pairs of triangles whose boxes overlap, sorted, for what is drawn afterwards. Null if a tree
-/// or oriented boxes would decide, or normals help. ignored, threads: as decide_by_blocks().
+/// Returns all pairs of triangles whose boxes overlap, sorted. Returns empty if decide_by_blocks()
+/// chooses a tree, oriented boxes or normals. ignored, threads: as decide_by_blocks().
 /// neighbours: false leaves out pairs of one object that share a vertex index.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,

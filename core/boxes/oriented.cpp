@@ -1,5 +1,5 @@
-// A block's frame comes from the second moments of its corners. Blocks are the leaves of a tree of
-// oriented boxes, which is searched for one block after the other. Floats decide as in compare.cpp.
+// Computes a block's frame from the second moments of its corners. Searches a tree of oriented
+// boxes, whose leaves are blocks, for one block after the other. Floats decide as in compare.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>
@@ -36,13 +36,13 @@ HWY_INLINE Vector dot(const std::array<float, 3>& d, Vector x, Vector y, Vector 
   return hn::Add(hn::Add(hn::Mul(all(d[0]), x), hn::Mul(all(d[1]), y)), hn::Mul(all(d[2]), z));
 }
 
-// Boxes of the block that may have a point in common with `one`, as bits. The separating axes are
-// those of Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
+// Returns bits: which boxes of the block may have a common point with `one`. The separating axes
+// are those of Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
 HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const OrientedBox& one,
                                        float margin) {
   std::uint32_t out = 0;
   for (std::size_t from = 0; from < kWide; from += kLanes) {
-    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: direction k of the block along i
+    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: block direction k along i of `one`
     const auto dx = hn::Sub(at(block.middle, 0, from), all(one.middle[0]));
     const auto dy = hn::Sub(at(block.middle, 1, from), all(one.middle[1]));
     const auto dz = hn::Sub(at(block.middle, 2, from), all(one.middle[2]));
@@ -51,7 +51,7 @@ HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const Oriented
     const auto outside = [&](Vector distance, Vector reach) {
       return hn::Gt(hn::Abs(distance), hn::Add(reach, all(margin)));
     };
-    auto separated = hn::Gt(dx, dx);  // no lane yet
+    auto separated = hn::Gt(dx, dx);  // false in all lanes
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         turned[i][k] = dot(one.frame[i], at(block.frame[k], 0, from), at(block.frame[k], 1, from),
@@ -178,8 +178,9 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
 
 namespace {
 
-// Margins relative to the distance of the farthest corner from the origin. They bound the rounding
-// when two oriented boxes, or two triangles, are compared (docs/reliability.md, "Oriented boxes").
+// Margins, relative to the distance of the farthest corner from the origin. kBoxMargin bounds the
+// rounding when two oriented boxes are compared, and kTriangleMargin when two triangles are
+// compared (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
 // Sums over points: their number, their coordinates, and the products of two coordinates.
@@ -200,8 +201,8 @@ struct Moments {
   }
 };
 
-// The principal directions of the points. Any frame gives right answers if its directions have
-// length 1 and are perpendicular, up to the rounding to floats.
+// Returns the principal directions of the points. Any frame gives right answers if its directions
+// have length 1 and are perpendicular, up to the rounding to floats.
 Frame frame_of(const Moments& moments) {
   const Vec3 mean = moments.sum / moments.count;
   const Eigen::Matrix3d covariance = moments.products / moments.count - mean * mean.transpose();
@@ -227,7 +228,7 @@ float along(const std::array<float, 3>& d, float x, float y, float z) {
   return d[0] * x + d[1] * y + d[2] * z;
 }
 
-// The box, along a frame, of the corners of some blocks.
+// Returns the box along `frame` that contains all corners of the blocks.
 OrientedBox box_along(const Frame& frame, std::span<const OrientedLanes> blocks) {
   OrientedBox out{.frame = frame, .middle = {}, .half = {}};
   std::array<float, 3> middle;
@@ -258,7 +259,7 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
                       const Vec3& origin, float margin, OrientedLanes& out) {
   Moments moments;
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // Lanes without a triangle repeat the last one; their boxes along the axes meet nothing.
+    // A lane without a triangle repeats the last triangle. Its box along the axes meets nothing.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 corner = scene.vertices[scene.triangles[t][c]] - origin;
@@ -286,8 +287,8 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
   return moments;
 }
 
-// Puts the triangles of an object that meet its region in order, and its other triangles behind
-// them. Returns how many meet it, and adds their boxes to `all`.
+// Orders the triangles of an object: first those that meet the region, by spatial_order(), then the
+// others. Returns how many meet the region, and adds the boxes of these triangles to `all`.
 std::uint32_t order_in(const Scene& scene, const Object& object, double clearance,
                        const Box& region, std::span<std::uint32_t> order, Box& all) {
   std::vector<Box> boxes;
@@ -318,7 +319,7 @@ BoxTree<float> plant(std::span<const OrientedBox> leaves, std::span<const Orient
   BoxTree<float> out;
   out.leaves = leaves.size();
   std::vector<OrientedBox> boxes(leaves.begin(), leaves.end());
-  std::size_t wide = 1;  // leaves below a box
+  std::size_t wide = 1;  // number of leaves below each box
   while (!boxes.empty() && (boxes.size() > 1 || out.levels == 0)) {
     const std::size_t n = (boxes.size() + kWide - 1) / kWide;
     for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -372,12 +373,11 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   for (const Box& box : blocks.objects) {
     if (!box.is_empty()) all.add(box);
   }
-  // The middle, rounded. In a scene as small as the gap between two doubles, it may be a corner.
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
-  // The corners are at most `reach` from the origin. Below 2^-60 floats lose more than the margins
-  // allow; above 2^60 they overflow.
+  // No corner is farther than `reach` from the origin. If `reach` is below 2^-60, floats lose more
+  // than the margins allow. Above 2^60, floats overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;
   if (!(reach >= 0x1p-60 && reach + gap <= 0x1p60)) return nullptr;
   out->margin = static_cast<float>(kBoxMargin * reach + gap);
@@ -426,8 +426,8 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take) {
   const std::vector<std::uint32_t> place = blocks.blocks.lane_places();
-  // Erases neighbours from index `from` on. Earlier pairs may be of different objects; these count
-  // even if they share a vertex index.
+  // Erases neighbours from index `from` on. Pairs before `from` stay: they may be of different
+  // objects, and such a pair counts even if it shares a vertex index.
   const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {
     const auto shared = [&](const TrianglePair& pair) {
       return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);

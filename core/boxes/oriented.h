@@ -1,10 +1,10 @@
 // Oriented boxes of blocks of triangles. Boxes along the axes separate long, thin, oblique
-// triangles poorly. So each block gets three directions, from the principal directions of its
-// corners, and two triangles are compared along the directions of both blocks.
+// triangles poorly. So each block gets three directions, the principal directions of its corners.
+// Two triangles are compared along the directions of the blocks of both triangles.
 //
-// If the images of two sets under one linear map have no common point, the sets have none. So any
-// direction may be compared; good ones separate more. All is computed in floats relative to one
-// origin, and margins cover all rounding errors (docs/reliability.md, "Oriented boxes").
+// If the projections of two sets on a direction have no common point, the sets have none. So any
+// direction may be compared, and good directions separate more sets. Floats relative to one origin
+// are used, and margins cover all rounding errors (docs/reliability.md, "Oriented boxes").
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ struct alignas(64) WideOriented {
 struct alignas(64) OrientedLanes {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   Frame frame;
-  WideBoxes<float> boxes;  // along the frame, grown by the margin of triangles
-  FloatBox bound;          // of all boxes
+  WideBoxes<float> boxes;  // boxes of the triangles along `frame`, grown by a margin
+  FloatBox bound;          // the box around all boxes
 };
 
 /// The blocks of objects that meet others, in the order of spatial_order().
@@ -48,13 +48,13 @@ struct OrientedBlocks {
   TriangleBlocks blocks;                     // all objects with a region are gathered
   UninitializedVector<OrientedLanes> lanes;  // one for each of blocks.lanes
   std::vector<OrientedBox> boxes;            // one for each of blocks.lanes
-  std::vector<BoxTree<float>> trees;         // per object, over its blocks; without boxes
+  std::vector<BoxTree<float>> trees;         // per object, over its blocks
   std::vector<WideOriented> nodes;
-  float margin = 0;  // two oriented boxes are apart if a direction shows a larger gap
+  float margin = 0;  // two oriented boxes are apart if the gap along a direction is larger
 };
 
-/// regions: per object, as gather_scattered() takes them. Null if the coordinates are too large or
-/// too small for floats. threads: 0 for as many as there are cores.
+/// Returns null if the coordinates are too large or too small for floats. regions: per object, as
+/// gather_scattered() takes them. threads: 0 for as many as there are cores.
 std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double clearance,
                                                     std::span<const Box> regions, unsigned threads);
 
@@ -63,7 +63,7 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
                    std::uint32_t from, std::uint32_t to, std::size_t most,
                    std::vector<BlockPair>& out);
 
-/// As give_pairs_of_some(), but boxes have to overlap along the frames of both blocks too.
+/// As give_pairs_of_some(), but boxes must also overlap along the frame of each of the two blocks.
 std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& blocks,
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take);
@@ -73,7 +73,7 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
 std::uint64_t give_pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                    const BlockPairs& some, double clearance, bool neighbours,
                                    unsigned threads, const TakePairs& take);
-/// The pairs of triangles in all pairs of blocks of the meetings, and meetings.kept; sorted.
+/// Returns the pairs of triangles of all pairs of blocks, joined with meetings.kept, sorted.
 std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
                                           double clearance, bool neighbours, unsigned threads);
 

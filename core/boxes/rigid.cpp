@@ -44,8 +44,8 @@ class Walk {
         threads_(threads),
         place_(blocks_.ranges.size()) {}
 
-  // All pairs of blocks of these objects whose moved boxes, grown by half the clearance, overlap,
-  // and maybe some whose boxes nearly do. Null if at any height there are too many.
+  // Returns all pairs of blocks whose moved boxes, grown by half the clearance, overlap. A few of
+  // the boxes may only nearly overlap. Returns empty if there are too many pairs at any height.
   std::optional<std::vector<BlockPair>> pairs(std::span<const ObjectOverlap> meetings) {
     BlockPairs out;
     int levels = 0;
@@ -72,7 +72,7 @@ class Walk {
   }
 
  private:
-  // A root of at most the height `below` is its own only child.
+  // Fills `out` with a node's moved children. A root of height `below` or less is its own child.
   void move_children_of(std::uint32_t node, int below, BlockLanes& out) const {
     const std::uint32_t object = rigid_.object_of[node], first = blocks_.first[object];
     const BoxTree<double>& tree = rigid_.trees[object];
@@ -93,8 +93,8 @@ class Walk {
     for (std::uint32_t k = 0; k < kWide; ++k) set(k, children.get(k), kWide * number + k);
   }
 
-  // The pairs of children that overlap. If there are more than `most`, returns only some, but more
-  // than `most`. Else their order does not depend on threads.
+  // Returns the pairs of children that overlap. If there are more than `most`, may return only some
+  // of them, but more than `most`. Else the order does not depend on threads.
   std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs,
                                               std::size_t most) const {
     constexpr std::size_t kAtOnce = 256;
@@ -128,13 +128,12 @@ class Walk {
   double half_;
   unsigned threads_;
   std::vector<std::uint32_t> place_;       // per node in a pair: its index in lanes_
-  UninitializedVector<BlockLanes> lanes_;  // per such node: its children
+  UninitializedVector<BlockLanes> lanes_;  // per node in a pair: its children
 };
 
 constexpr double kMost = std::numeric_limits<double>::max() / 4;
 
-// True if no number that occurs while a point of the box is moved is above kMost, and for an empty
-// box.
+// True if moving a point of the box yields no number above kMost. True for an empty box.
 bool keeps_finite(const RigidMotion& motion, const Box& box) {
   if (box.is_empty()) return true;
   const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
@@ -213,7 +212,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   }
   const ObjectOverlaps meetings = find_meetings(scene, blocks, ignored);
   if (meetings.crowded) return std::nullopt;
-  // The middle of the places where objects meet: floats relative to it are finest there.
+  // The origin is the middle of the regions where objects meet: floats are finest near the origin.
   Box all = Box::empty();
   for (const auto& [a, b] : meetings.all)
     all.add(intersection(blocks.objects[a], blocks.objects[b]));
@@ -228,7 +227,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   out.blocks.overlaps = out.blocks.pairs.size();
   out.blocks.meetings = meetings.all.size();
   out.blocks.triangles = triangles_in(out.blocks.pairs, blocks);
-  // Triangles that overlap so often are left to oriented boxes or a tree.
+  // If blocks overlap so often, oriented boxes or a tree have to decide.
   if (kWide * out.blocks.overlaps > kPairsPerBlock * (out.blocks.triangles + kWide * kWide))
     return std::nullopt;
   return out;
@@ -250,7 +249,7 @@ void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> m
           }
           for (const std::uint32_t v : blocks.vertices_of(some[k])) {
             const Vec3 to = moved(motion, resting[v]);
-            // Another thread may write the vertex for another block, but the same numbers.
+            // Another thread may write this vertex for another block. It writes the same numbers.
             for (Eigen::Index axis = 0; axis < 3; ++axis)
               std::atomic_ref(scene.vertices[v][axis]).store(to[axis], std::memory_order_relaxed);
           }

@@ -21,13 +21,14 @@
 
 namespace farcull {
 
-/// Moves a point p to r p + t. Any finite numbers: it may mirror, scale, shear and flatten.
+/// Moves a point p to r p + t. All numbers are finite; it may mirror, scale, shear and flatten.
 struct RigidMotion {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
   std::array<double, 3> t = {0, 0, 0};
 };
 
-/// A coordinate of a moved point. Each product and sum is rounded, in this order. row: one of r.
+/// Returns a coordinate of a moved point. Each product and each sum is rounded, in this order. row:
+/// one of the three rows of r.
 inline double moved_coordinate(const double* row, double x, double y, double z, double t) {
   return ((row[0] * x + row[1] * y) + row[2] * z) + t;
 }
@@ -37,8 +38,8 @@ inline Vec3 moved(const RigidMotion& motion, const Vec3& p) {
           moved_coordinate(r + 3, p.x(), p.y(), p.z(), motion.t[1]),
           moved_coordinate(r + 6, p.x(), p.y(), p.z(), motion.t[2])};
 }
-/// A closed box that contains moved(motion, p) for each point p of the box. Preconditions: the box
-/// is not empty, and the motion keeps it finite.
+/// Returns a closed box that contains moved(motion, p) for each point p of `box`. Preconditions:
+/// the box is not empty, and the moved box is finite.
 Box moved(const RigidMotion& motion, const Box& box);
 
 /// The blocks of the objects of a scene, and trees over them, each object in its own frame.
@@ -48,7 +49,7 @@ struct RigidBlocks {
   std::shared_ptr<TriangleBlocks> of;
   std::vector<std::uint32_t> object_of;     // per block
   std::vector<std::uint32_t> first_vertex;  // per block and one past the last: index in `vertices`
-  std::vector<std::uint32_t> vertices;      // of each block, each once
+  std::vector<std::uint32_t> vertices;      // block after block; each vertex once per block
   std::vector<BoxTree<double>> trees;       // per object, over its blocks; not grown
   std::vector<WideBoxes<double>> nodes;
 
@@ -61,18 +62,17 @@ struct RigidBlocks {
 /// threads: 0 for as many as there are cores.
 RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads);
 
-/// As decide_by_blocks() for the scene after each object was moved, but reads no vertices. Null if
-/// decide_by_blocks() has to decide, because an object is tested against itself, a motion does not
-/// keep it finite, or too many boxes overlap. motions: one for each object. ignored: as
-/// find_meetings().
+/// Decides as decide_by_blocks() for the moved objects, but reads no vertices. Returns empty if
+/// decide_by_blocks() has to decide: an object is tested against itself, a moved box may be
+/// infinite, or too many boxes overlap. motions: one for each object. ignored: as find_meetings().
 std::optional<BlockDecision> decide_by_motions(const Scene& scene,
                                                std::span<const RigidMotion> motions,
                                                double clearance,
                                                std::span<const ObjectPair> ignored,
                                                unsigned threads, RigidBlocks& blocks);
 
-/// Writes to scene.vertices the moved vertices of the triangles of all blocks of the pairs; leaves
-/// the others as they are. resting: all vertices in the frames of their objects.
+/// Writes the moved vertices of all blocks in the pairs to scene.vertices. Other vertices stay as
+/// they are. resting: all vertices in the frames of their objects.
 void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> motions,
                    const RigidBlocks& blocks, const BlockPairs& pairs, unsigned threads,
                    Scene& scene);

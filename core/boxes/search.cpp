@@ -13,8 +13,8 @@
 namespace farcull {
 namespace {
 
-// Whether results of the previous frame are stored and can be reused. If not, the memory is made
-// ready to keep this one.
+// True if the memory has results of the previous frame that can be reused. Else makes the memory
+// ready to keep results of this frame.
 bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   const std::optional<std::uint64_t> last =
       std::exchange(memory.frame, {});  // stays empty until this frame is found
@@ -30,7 +30,7 @@ bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   return false;
 }
 
-// The number of pairs of objects that a stage of boxes ignores.
+// Returns the number of ignored pairs of objects, or empty if there are none.
 std::optional<std::uint64_t> ignored_pairs(const BoxesSettings& settings) {
   if (settings.ignored.empty()) return std::nullopt;
   return settings.ignored.size();
@@ -57,7 +57,7 @@ Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
 void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, FrameMemory& memory) {
   const BlockDecision& decision = plan.decision;
   memory.frame = plan.by_tree() ? std::nullopt : std::optional(memory.moved.frame());
-  // While nothing moves the plan has no blocks, and the pairs are those of the frame before.
+  // If nothing moved, the plan has no blocks, and the pairs are those of the previous frame.
   if (decision.blocks.of) memory.oriented = decision.blocks.oriented != nullptr;
   memory.pairs = plan.by_tree() ? std::vector<TrianglePair>() : found;
   memory.counts = {.blocks = {}, .pairs = decision.pairs, .self = decision.self};

@@ -26,14 +26,14 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
 
 // Objects with fewer triangles are not sampled.
 constexpr std::uint32_t kLeastSampled = 4096;
-// The position of item k of a sample, in [0, 1). Multiples of the golden ratio are as even as a
-// grid, but have no period, as many surfaces have.
+// Returns the position of item k of a sample, in [0, 1). Multiples of the golden ratio are as even
+// as a grid, but have no period. A period could match a period of the surface.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
 }
-// How many times longer the box of an object (grown by `half`) is than the box around most of its
-// triangles; 0 for an object that is not sampled.
+// Returns how many times longer the box of an object (grown by `half`) is than the box around most
+// of its triangles. Returns 0 for an object that is not sampled.
 float stretch_of(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
   if (object.triangle_count < kLeastSampled) return 0;
@@ -62,15 +62,15 @@ void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
   }
 }
 
-// Calls work(k, threads) for k in 0 .. count - 1. If there are few, one after the other, each with
-// all threads; else in parallel, each with one thread.
+// Calls work(k, threads) for k in 0 .. count - 1. If `count` is small, makes one call after the
+// other, each with all threads. Else makes the calls in parallel, each with one thread.
 template <class Work>
 void for_each_of(std::size_t count, unsigned threads, const Work& work) {
   const bool few = count < chunks_for(SIZE_MAX, 1, threads);
   for_each_shared(count, few ? 1 : threads, [&](std::size_t k) { work(k, few ? threads : 1); });
 }
 
-// The middle of a box; finite even if the box is not.
+// Returns the middle of a box. The middle is finite even if the box is not.
 Vec3 middle(const Box& box) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   if (box.is_empty()) return Vec3::Zero();
@@ -91,7 +91,7 @@ void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
 // Four numbers at once, which the compiler computes on lanes.
 using Four = std::array<std::uint32_t, 4>;
 
-// The lower 10 bits of each number, with two zeros before each bit.
+// Returns the lower 10 bits of each number, with two zeros before each bit.
 Four spread(Four x) {
   for (std::uint32_t& own : x) own = (own | own << 16) & 0x030000ff;
   for (std::uint32_t& own : x) own = (own | own << 8) & 0x0300f00f;
@@ -132,10 +132,10 @@ class MortonGrid {
     scale_ = most_ / size;
   }
   int bits() const { return 3 * bits_; }
-  // The code of the cell with the box's lower corner.
+  // Returns the code of the cell that contains the box's lower corner.
   std::uint32_t code(const FloatBox& box) const {
     std::array<float, 4> at;
-    // Halves, since the difference may be infinite.
+    // Halves the numbers, because the difference may be infinite.
     for (std::size_t k = 0; k < 4; ++k) at[k] = (0.5f * box.lo[k] - 0.5f * lo_[k]) * scale_;
     for (float& own : at) own = std::min(std::max(own, 0.0f), most_);
     Four cell;
@@ -156,8 +156,8 @@ float longest_side(const FloatBox& box) {
   return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
-// The length of the boxes of most triangles: the median of the longest sides of a sample. Infinite
-// for an object that is not sampled.
+// Returns the usual length of a triangle's box: the median of the longest sides of a sample.
+// Returns infinity for an object that is not sampled.
 float usual_side(const Scene& scene, const Object& object, double half, const Vec3& origin) {
   constexpr std::size_t kSample = 64;
   if (object.triangle_count < kLeastSampled) return kInfinite;
@@ -173,10 +173,10 @@ float usual_side(const Scene& scene, const Object& object, double half, const Ve
   return sides[kSample / 2];
 }
 
-// Puts the triangles of an object that meet the region in order, then the others. Returns how many
-// meet it. The order is by size class, and in a class by Morton code, so that a large triangle does
-// not enlarge a block of small ones. Class c holds triangles whose boxes are more than 8^c times as
-// long as usual.
+// Orders the triangles of an object: first those that meet the region, then the others. Returns how
+// many meet the region. Sorts these by size class, and within a class by Morton code, so that a
+// large triangle does not enlarge a block of small triangles. Class c > 0 holds triangles whose
+// boxes are more than 8^c times as long as usual.
 std::uint32_t order_object(const Scene& scene, const Object& object, double half,
                            const Vec3& origin, const FloatBox& region, unsigned threads,
                            std::span<std::uint32_t> order) {
@@ -188,7 +188,7 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
   std::vector<UninitializedVector<Coded>> inside(chunks);
   std::vector<UninitializedVector<std::uint32_t>> outside(chunks);
   for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    // No branch: write to both, advance one; a branch would be mispredicted.
+    // Writes each triangle to both lists and advances one list. A branch would be mispredicted.
     UninitializedVector<Coded> in(end - begin);
     UninitializedVector<std::uint32_t> out(end - begin);
     std::size_t ins = 0, outs = 0;
@@ -362,7 +362,7 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
     all.add(blocks.objects[o]);
   }
   mark_stretched(scene, half, blocks);
-  // Floats relative to the old origin may be nearly as fine as those relative to the new middle.
+  // Keeps the old origin if floats relative to it are nearly as fine as relative to the new middle.
   if ((blocks.origin - middle(all)).cwiseAbs().maxCoeff() <= 4 * (all.hi - all.lo).maxCoeff())
     return;
   blocks.origin = middle(all);

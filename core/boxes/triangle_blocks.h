@@ -1,6 +1,6 @@
 // Blocks of triangles. Triangles that follow one another in a file are mostly close, so one box can
 // rule out a whole block, and most triangles are never examined one by one. Scattered triangles
-// are sorted first, so that those of a block are close, and large ones are in blocks of their own.
+// are sorted first, so that the triangles of a block are close and of similar size.
 #pragma once
 
 #include <cstdint>
@@ -22,16 +22,17 @@ struct TriangleBlock {
 /// The blocks of all objects of a scene, and their boxes, grown by half the clearance.
 struct TriangleBlocks {
   std::vector<TriangleBlock> ranges;
-  std::vector<Box> boxes;            // per block; of gathered objects only after update_boxes()
+  std::vector<Box> boxes;  // per block; valid for gathered objects only after update_boxes()
   std::vector<std::uint32_t> first;  // per object and one past the last: its first block
-  std::vector<Box> objects;          // empty if an object has no triangle
+  std::vector<Box> objects;          // per object: its box; empty if it has no triangle
   std::vector<std::uint32_t> order;  // triangles in the order of the blocks; empty: as in the file
   Vec3 origin = Vec3::Zero();        // boxes in floats are relative to it; finite
 
   /// A gathered object: its triangles were put in an order of their own.
   struct Gathered {
     std::uint32_t first = 0;  // index of its first block in `lanes`
-    std::uint32_t count = 0;  // its blocks with lanes; triangles of its other blocks meet nothing
+    std::uint32_t count =
+        0;  // number of its blocks with lanes; triangles of other blocks meet nothing
     bool any = false;
   };
   std::vector<Gathered> gathered;  // per object; empty: no object was gathered
@@ -39,19 +40,19 @@ struct TriangleBlocks {
   UninitializedVector<BlockLanes> lanes;  // of the blocks of gathered objects
 
   bool is_gathered(std::uint32_t object) const { return !gathered.empty() && gathered[object].any; }
-  /// How many times longer the box of an object is than the box around most of its triangles; 0 if
-  /// it is not stretched.
+  /// Returns how many times longer the box of an object is than the box around most of its
+  /// triangles. Returns 0 if the object is not stretched.
   float stretch(std::uint32_t object) const { return stretched.empty() ? 0 : stretched[object]; }
-  /// Number of blocks of an object that can meet anything.
+  /// Returns the number of blocks of an object that can meet anything.
   std::uint32_t count(std::uint32_t object) const {
     return is_gathered(object) ? gathered[object].count : first[object + 1] - first[object];
   }
-  /// The box of block k of an object, relative to the origin. Precondition: k < count(object).
+  /// Returns the box of an object's block k, relative to the origin. k < count(object).
   FloatBox bound(std::uint32_t object, std::uint32_t k) const {
     return is_gathered(object) ? lanes[gathered[object].first + k].bound
                                : relative(boxes[first[object] + k], origin);
   }
-  /// Per block, the index of its lanes in `lanes`, or kNoLanes.
+  /// Returns for each block the index of its lanes in `lanes`, or kNoLanes.
   std::vector<std::uint32_t> lane_places() const {
     std::vector<std::uint32_t> out(ranges.size(), kNoLanes);
     for (std::uint32_t o = 0; o < objects.size(); ++o) {
@@ -61,7 +62,7 @@ struct TriangleBlocks {
     return out;
   }
   static constexpr std::uint32_t kNoLanes = UINT32_MAX;
-  /// The triangle at a position, TriangleBlock::first + k.
+  /// Returns the triangle at a position in the order of the blocks.
   std::uint32_t triangle(std::uint32_t position) const {
     return order.empty() ? position : order[position];
   }
@@ -74,15 +75,15 @@ constexpr double kScattered = 3;
 /// of its triangles (judged by a sample). Grids over such a box are of no use. Objects of a few
 /// blocks are not judged.
 constexpr float kStretched = 8;
-/// Beyond this, boxes of blocks in floats are of no use either. A block of a surface with a million
-/// triangles is 1/256 as long as the surface. At least 64 float steps should fit into it; a step is
-/// 2^-24 of the object's box.
+/// If an object is stretched beyond kUneven, boxes of its blocks in floats are of no use. A block
+/// of a surface with a million triangles is 1/256 as long as the surface. At least 64 float steps
+/// should fit into a block. A float step is 2^-24 of the object's box.
 constexpr float kUneven = 0x1p24f / (256 * 64);
 
-/// Sets the ranges of the blocks, whose list must be empty, and the first block of each object.
+/// Sets blocks.ranges and blocks.first. Precondition: blocks.ranges is empty.
 void divide(const Scene& scene, TriangleBlocks& blocks);
-/// Blocks in the order of the file; stretched objects are marked. threads: 0 for as many as there
-/// are cores.
+/// Makes blocks in the order of the file, and marks stretched objects. threads: 0 for as many as
+/// there are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
 /// Chooses the origin. In each scattered object, orders the triangles that meet the object's region
 /// by size class and Morton code, as blocks with lanes. In each stretched object, orders all
@@ -91,11 +92,11 @@ TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned thread
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, TriangleBlocks& blocks);
 
-/// Blocks in the order of the file. Scattered objects have all triangles in Morton order, with
-/// lanes and a box for each block; stretched ones have them in the order of spatial_order().
+/// Makes blocks. The triangles of scattered objects are in Morton order, the triangles of stretched
+/// objects in the order of spatial_order(), and all others in the order of the file.
 TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Brings blocks from make_ordered_blocks() up to date: recomputes the boxes and lanes of those in
-/// which a corner moved, and the boxes of the objects. moved: per block, whether a corner moved.
+/// Brings blocks from make_ordered_blocks() up to date: recomputes the boxes and lanes of blocks
+/// with a moved corner, and the boxes of all objects. moved: per block, 1 if a corner moved.
 void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
                   unsigned threads, TriangleBlocks& blocks);
 

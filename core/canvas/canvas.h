@@ -17,22 +17,23 @@
 
 namespace farcull {
 
-/// Counts since the canvas was made. All are 0 for a canvas on the cores of the CPU.
+/// Counts since the canvas was made. A canvas on the cores of the CPU leaves all counts 0.
 struct CanvasWork {
-  std::uint64_t passes = 0;            // calls of Canvas::run() with at least one step
-  std::uint64_t draws = 0;             // draw calls
-  std::uint64_t dispatches = 0;        // runs of programs that sum what was sent and pack flags
-  std::uint64_t state_changes = 0;     // changes of program, target or depth test between steps
-  std::uint64_t queries = 0;           // occlusion queries, and one per pass that counts primitives
-  std::uint64_t readbacks = 0;         // answers that were read: reports, then each query
+  std::uint64_t passes = 0;         // calls of Canvas::run() with at least one step
+  std::uint64_t draws = 0;          // draw calls
+  std::uint64_t dispatches = 0;     // runs of compute programs
+  std::uint64_t state_changes = 0;  // changes of program, target or depth test between steps
+  std::uint64_t queries = 0;  // occlusion queries, and for each pass a query that counts primitives
+  std::uint64_t readbacks = 0;         // reports and queries that were read
   std::uint64_t waits = 0;             // waits for the device to finish its commands
-  std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
-  std::uint64_t downloaded_bytes = 0;  // of reports and queries
-  std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
+  std::uint64_t uploaded_bytes = 0;    // bytes of elements and of lists of passes
+  std::uint64_t downloaded_bytes = 0;  // bytes of reports and queries
+  std::uint64_t spans = 0;             // passes and uploads; the device's clock may time them
   std::uint64_t timed = 0;             // spans whose time is known
-  double device_ms = 0;                // sum of these times, by the clock of the device
+  double device_ms = 0;                // sum of the known times, by the clock of the device
 
-  /// The time of all spans on the device, ms; empty if there was no span, or one was not timed.
+  /// Returns the time of all spans on the device, ms. Returns empty if there was no span, or if a
+  /// span was not timed.
   std::optional<double> known_ms() const {
     if (spans == 0 || timed < spans) return {};
     return device_ms;
@@ -63,18 +64,18 @@ struct CanvasWork {
   }
 };
 
-/// How a primitive gets its depth. fragment: one screen-aligned proxy, entry and exit depth
-/// computed by the shader function of the offset. fixed: the triangles of a closed or open surface,
-/// depth interpolated by the rasterizer.
+/// How a primitive gets its depth. fragment: the primitive is a proxy parallel to the screen, and
+/// the solid's shader function computes its entry and exit depths. fixed: the primitive is a
+/// triangle, and the rasterizer interpolates its depth.
 enum class DepthMode { fragment, fixed };
 
-/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are 0;
-/// only elements that the canvas itself draws at a fixed depth use them.
+/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are 0,
+/// except in elements that the canvas itself draws at a fixed depth.
 using Solid = std::array<std::array<float, 4>, 5>;
 
 /// A convex quadrilateral (px, in order around) and the solid seen through it.
 struct Proxy {
-  std::array<float, 8> corners;  // x, y
+  std::array<float, 8> corners;  // x, y of each corner
   Solid solid;
 };
 
@@ -83,19 +84,19 @@ struct NativeLines;  // core/native/canvas.h
 
 /// A solid's shader function, one source for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
-/// false: the line through the pixel centre c along the depth misses the solid; else [entry, exit],
-/// widened outward by the function's own rounding error, contains the part of the line inside the
-/// solid.
+/// It returns false if the line through the pixel centre c along the depth misses the solid. Else
+/// [entry, exit] contains the part of the line inside the solid. The interval is widened outward by
+/// the function's own rounding error.
 struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h): false if any
-  /// permitted rounding gives a miss, else the latest entry and the earliest exit.
+  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h). Returns false if
+  /// any permitted rounding gives a miss. Else sets the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// solid_interval on the lanes of this processor (core/native/canvas.h), for proxies and for
-  /// single lines.
+  /// Both run solid_interval on the lanes of this processor (core/native/canvas.h): draw_native for
+  /// proxies, lines_native for single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
@@ -112,13 +113,14 @@ struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };
 
-/// Bounds of a proxy, known before it is fitted to its triangle. They show of most proxies that
-/// they change nothing, or that they are seen.
+/// Bounds of a proxy, known before it is fitted to its triangle. For most proxies they suffice to
+/// show that the proxy changes nothing, or that it is seen.
 struct ProxyOutline {
   PixelRange range;         // pixels that the rectangle may cover, by its corners
-  float nearest, farthest;  // px; no entry is before nearest, no exit behind farthest
-  /// A pixel of the window whose centre the proxy covers, and a depth (px); the exit there is at or
-  /// behind it (docs/budget.md, "The canvas on the CPU"). x = kNoPixel: none is known.
+  float nearest, farthest;  // px; bounds of all entries and exits of the proxy
+  /// A pixel of the window whose centre the proxy covers, and a depth (px). In this pixel, the exit
+  /// is at this depth or behind it (docs/budget.md, "The canvas on the CPU"). x = kNoPixel: no such
+  /// pixel is known.
   std::uint16_t x, y;
   float depth;
 };
@@ -131,11 +133,11 @@ struct FattenBatch {
   std::size_t count = 0;
   const Window* window = nullptr;
   double radius = 0;  // px
-  double reach = 0;   // px; a proxy covers every pixel centre this close to a corner; 0: unknown
+  double reach = 0;   // px; a proxy covers all pixel centres this close to its corners; 0: unknown
   ProxyBounds bounds{};
-  std::uint8_t* done = nullptr;  // per item: 1: the item's one proxy is there; 0: the item is not
+  std::uint8_t* done = nullptr;  // per item: 1: its only proxy was made; 0: the item is not
                                  // drawable or has to be clipped to the region
-  // Per item, and only valid if the item is done. One of the two is null.
+  // Per item, valid only if the item is done. Either `out` or `outlines` is null.
   Proxy* out = nullptr;
   ProxyOutline* outlines = nullptr;
 };
@@ -147,11 +149,11 @@ struct Drawables {
   std::vector<std::uint32_t> first{0};
   UninitializedVector<Proxy> proxies;            // fragment; per element if `fit` is null
   std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
-  std::vector<std::uint32_t> undrawable;  // items beyond the budget: they own no elements, see Pass
+  std::vector<std::uint32_t> undrawable;         // items beyond the budget; they own no elements
 
-  /// For a canvas that fits proxies as it draws (Canvas::fits_proxies). Element e is
-  /// proxies[sources[e] - kFitted], or, if sources[e] < kFitted, what fit(batch) makes of triangle
-  /// sources[e]; the caller sets items, count, out and done. Null: sources and outlines are empty.
+  /// For a canvas that fits proxies as it draws (Canvas::fits_proxies). If sources[e] >= kFitted,
+  /// element e is proxies[sources[e] - kFitted]. Else fit(batch) makes it from triangle sources[e];
+  /// the caller sets items, count, out and done of `batch`. Null: sources and outlines are empty.
   void (*fit)(const FattenBatch& batch) = nullptr;
   FattenBatch batch;
   UninitializedVector<std::uint32_t> sources;
@@ -165,8 +167,8 @@ struct Drawables {
 };
 constexpr std::uint32_t kFitted = 0x80000000;
 
-/// One element, drawn on behalf of a slot (the index of an answer of the pass). kEverywhere: a quad
-/// over the whole window at the nearest depth; it is only stored, and hides all.
+/// One element, drawn for a slot (the index of an answer of the pass). Element kEverywhere is a
+/// quad over the window at the nearest depth. It is only stored, never asked, and hides everything.
 struct Draw {
   std::uint32_t element;
   std::uint32_t slot;
@@ -175,19 +177,19 @@ constexpr std::uint32_t kEverywhere = 0xffffffff;
 
 enum class Verb : std::uint8_t { ask, store };
 
-/// A step of a pass: draws[first .. first + count - 1], all asked or all stored.
+/// A step of a pass: it asks or stores draws[first .. first + count - 1].
 struct Step {
   Verb verb;
   std::uint32_t first;
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that starts empty. Draws of one slot in a step are
-/// consecutive. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is
-/// seen if one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
-/// where nothing is stored, nothing is seen. touching = false: only a fragment behind it counts
-/// (GREATER), as S-CULLIDE's visibility test passes a fragment at or in front of the stored depth.
-/// Contacts at equal depth are then not seen, so no guarantee holds.
+/// Steps in order, on a depth buffer that starts empty. Draws of one slot are consecutive.
+/// - store: each pixel keeps the nearest depth (the entry depth of a proxy).
+/// - ask: a slot is seen if one of its fragments (exit depth of a proxy) is at or behind the stored
+///   depth (GEQUAL). In a pixel without a stored depth, nothing is seen.
+/// - touching = false: a fragment is seen only behind the stored depth (GREATER), as in S-CULLIDE.
+///   Contacts at equal depth are not seen, so no guarantee holds.
 struct Pass {
   bool touching = true;
   std::uint32_t slots = 0;
@@ -199,59 +201,58 @@ class Canvas {
  public:
   virtual ~Canvas() = default;
   virtual const RasterLimits& limits() const = 0;
-  /// Whether this canvas takes drawables whose proxies are not fitted yet (Drawables::fit).
+  /// True if this canvas takes drawables whose proxies are not fitted yet (Drawables::fit).
   virtual bool fits_proxies() const { return false; }
-  /// The passes that follow draw elements of `drawables`, which the canvas refers to until the next
+  /// Later passes draw elements of `drawables`. The canvas refers to `drawables` until the next
   /// begin().
   virtual void begin(const Window& window, const Drawables& drawables) = 0;
-  /// Per slot: 1 seen, 0 not. Throws Error unless every command of the pass is known to have run
-  /// (assumption A7).
+  /// Returns for each slot 1 if it is seen and 0 if not. Throws Error unless every command of the
+  /// pass is known to have run (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
-  /// For each pixel of the window the depth in px that `draws` give it: the nearest entry (store)
-  /// or the farthest exit (ask); NaN if it has no fragment. height rows of width values. Of
-  /// fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas' tests
-  /// and for pictures.
+  /// Returns the depth (px) that `draws` give to each pixel of the window: the nearest entry
+  /// (store) or the farthest exit (ask), or NaN without a fragment. Returns height rows of width
+  /// values. If mapped depths are equal, any of the fragments may be taken. Proxies only. For tests
+  /// of lemmas and for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }
-  /// For each pixel of the window the depth, as the depth buffer holds it, after storing (nearest
-  /// entry) or asking (farthest exit) `draws`. height rows of width values in [0, 1]; an empty
-  /// pixel has 1 for store and 0 for ask. For the lemmas' tests and for pictures.
+  /// Returns for each pixel of the window the depth as the depth buffer holds it: the nearest entry
+  /// (store) or the farthest exit (ask) of `draws`. Returns height rows of width values in [0, 1].
+  /// An empty pixel has 1 for store and 0 for ask. For tests of lemmas and for pictures.
   virtual std::vector<float> depths(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no depths");
   }
-  /// Work that was asked of the device so far; all 0 on the cores of the CPU.
+  /// Returns the device's work so far. All counts are 0 on the cores of the CPU.
   virtual CanvasWork work() const { return {}; }
 };
 
-/// The depth map of a window, everywhere the same float expression:
+/// Returns the scale of a window's depth map. All code maps depths by the same float expression:
 ///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
-/// The rest of [0, 1] is for the items at fixed depths: 0 for kEverywhere, (0.75, 1) for a canvas's
-/// control items.
+/// Items at fixed depths use the rest of [0, 1]: kEverywhere has 0, control items are in (0.75, 1).
 inline float depth_scale(const Window& window) {
   const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;
   return static_cast<float>(0.25 / reach);
 }
-/// The depth of one step of a depth buffer in px.
+/// Returns the size in px of one step of a depth buffer.
 inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) {
   // Depths lie in [1/4, 3/4]: the coarsest step of a 32-bit float there is 2^-24, as for 24 bits of
   // fixed point.
   return 0x1p-24 / depth_scale(window);
 }
-/// Bounds, in steps of 2^-24, how far a depth read from a buffer may be from 0.5 + z * scale of an
-/// exact z of the window, in any rounding mode. The product, of at most 1/4, rounds by 2^-25; the
-/// sum, below 1, by 2^-24. A buffer of 24 bits rounds by 1 / (2^24 - 1) more when it stores, and by
-/// 2^-24 when it is read back as a float.
+/// Returns a bound, in steps of 2^-24, for the distance of a depth read from a buffer to the exact
+/// 0.5 + z * scale, in any rounding mode. The product is at most 1/4 and errs by 2^-25. The sum is
+/// below 1 and errs by 2^-24. A buffer of 24 bits adds an error of 1 / (2^24 - 1) when it stores a
+/// depth, and of 2^-24 when the depth is read back as a float.
 inline double depth_rounding(int depth_bits) {
   return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
 /// A GL canvas asks a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
-/// docs/budget.md, "Two programs", derives it; farcull_proofs (depth.behind) proves it. The program
-/// that stores and the one that asks may round the depth map in different directions, and may
-/// convert a depth to 24 bits to different neighbours. With this slack a proxy with entry <= exit
+/// docs/budget.md, "Two programs", derives this slack; farcull_proofs (depth.behind) proves it. One
+/// program stores and another one asks. They may round the depth map in different directions, and
+/// may convert a depth to different 24-bit neighbours. With this slack a proxy with entry <= exit
 /// is still seen. 3/4 plus the slack stays below 1, the value of an empty pixel. The canvas's own
-/// items have fixed depths and need no slack. Nor does the native canvas: one function rounds both
+/// items have fixed depths and need no slack. The native canvas needs none: one function rounds all
 /// depths to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 

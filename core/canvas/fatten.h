@@ -1,5 +1,5 @@
-// The stage between the scene and the canvas: turns each triangle into what a view draws. The
-// offset arrives as a function, so that core alone, with raw triangles, is a complete CULLIDE.
+// The stage between the scene and the canvas: turns each triangle into what a view draws. A
+// Fattener is given as functions, so core/ needs no code of offsets and is a complete CULLIDE.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace farcull {
 
 ProxyBounds proxy_bounds(const Window& window);
 
-/// The pixels of the window whose centres are in the box of `points`, grown by `margin` px on each
-/// side. points: every `step` floats begin with x and y (px) of a point.
+/// Returns the pixels of the window whose centres are in the box of `points`, grown by `margin` px
+/// on each side. points: every `step` floats begin with x and y (px) of a point.
 PixelRange pixel_range(std::span<const float> points, std::size_t step, double margin,
                        const Window& window);
-/// The outline of a fitted proxy. Only its pixels are known.
+/// Returns the outline of a fitted proxy. Only the outline's pixel range is known.
 ProxyOutline outline_of(const Proxy& proxy, const Window& window);
 
 /// The largest radius (px) that offsets and their kernels are derived for (docs/budget.md, "The
@@ -29,17 +29,17 @@ struct Fattener {
   std::string name;  // "raw", "obb", ...
   DepthMode mode;
   SolidProgram solid;  // fragment mode only
-  /// Appends the elements of one item: `patch` (drawable, count > 0) fattened by a ball of `radius`
-  /// px (>= 0).
+  /// Appends the elements of one item: `patch`, fattened by a ball of `radius` px (>= 0).
+  /// Preconditions: the patch is drawable, and its count is above 0.
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
-  /// Fattens many triangles at once, except those that need clipping, to the same bits as `fatten`;
-  /// or finds the outlines of their proxies. Null: triangles are fattened one by one.
+  /// Fattens many triangles at once to the same bits as `fatten`, or finds the outlines of their
+  /// proxies. Skips triangles that need clipping. Null: triangles are fattened one by one.
   void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
 
-/// CULLIDE's primitives: the clipped triangle itself, fixed-function depth; the radius is not used.
+/// Returns CULLIDE's fattener: draws the clipped triangle itself, at fixed depth, without radius.
 Fattener raw_triangles();
 
 struct FattenCounts {
@@ -48,10 +48,10 @@ struct FattenCounts {
   std::uint32_t undrawable = 0;
 };
 
-/// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
-/// does not depend on them. used: drawables no longer needed; their memory is reused. reach: as
-/// FattenBatch::reach. If it is given and the fattener has fatten_inside, proxies wait to be fitted
-/// (Drawables::fit), and the result refers to `scene` and `window`.
+/// Returns the elements of `triangles` (items, in this order) in `window`. Runs on all cores; their
+/// number does not change the result. used: old drawables, whose memory is reused. reach: as
+/// FattenBatch::reach. If `reach` is given and the fattener has fatten_inside, proxies are not
+/// fitted yet (Drawables::fit), and the result refers to `scene` and `window`.
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
                  const Fattener& fattener, double radius, FattenCounts& counts, Drawables used = {},
                  std::optional<double> reach = {});

@@ -15,7 +15,7 @@ namespace {
 
 double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
-  // Beyond kMaxRadius floats overflow in the kernels, and a fragment would be lost, not seen.
+  // Beyond kMaxRadius floats overflow in the kernels, and fragments are lost.
   if (!(radius >= 0 && radius <= kMaxRadius)) {
     throw Error("{radius}", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
                 "choose a smaller factor");
@@ -23,8 +23,8 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   return radius;
 }
 
-// The owner of each triangle: the given one, its object, or itself if its object is tested against
-// itself.
+// Returns the owner of each triangle: the given owner if there is one, else the object. A triangle
+// of an object that is tested against itself is its own owner.
 std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settings) {
   if (!settings.owners.empty()) return settings.owners;
   if (!settings.self) return owners(scene);
@@ -41,13 +41,13 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
   return out;
 }
 
-// A view of the run, and the state that its last visit left.
+// A view of the run, and the state after its last visit.
 struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // stored_version() when the first and the second pass at triangle level last ran. If it is still
-  // the same, the stored set is unchanged.
+  // stored_version() when the first and the second pass at triangle level last ran in this view. As
+  // long as it stays the same, the stored set is unchanged.
   std::uint64_t stored[2] = {0, 0};
-  PassCost plain;  // of plain CULLIDE's two passes at triangle level on the live triangles
+  PassCost plain;  // cost of plain CULLIDE's two passes at triangle level on the live triangles
 };
 
 bool has_own_owners(const Scene& scene, const CullSettings& settings) {
@@ -60,7 +60,7 @@ bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
 
-// The number of objects that take part, if they are too few to be asked as a whole; else 0.
+// Returns the number of objects that take part if there are too few for an object level. Else 0.
 std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
                               const CullSettings& settings) {
   if (settings.least_objects == 0 || settings.objects_alone || !owned_by_objects(scene, settings))
@@ -73,7 +73,7 @@ bool has_object_level(const Scene& scene, const Regions& regions, const CullSett
   return owned_by_objects(scene, settings) && too_few_objects(scene, regions, settings) == 0;
 }
 
-// The window of each view; empty where doubles cannot resolve its pixels.
+// Returns a state for each view. Its window is empty if doubles cannot resolve the view's pixels.
 std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings& settings) {
   std::vector<ViewState> places;
   for (const View& view : settings.views) {
@@ -199,12 +199,12 @@ class Culling {
     end_at_few();
   }
 
-  // True if another round follows, because this one changed something. If it did and none follows,
-  // a stage says why.
+  // True if another round follows. A round that changed nothing is the last. If this round changed
+  // something and no round follows, adds a stage with the reason.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
-    // Whether round 1 is the last does not depend on pixels.
+    // Pixels do not decide whether round 1 is the last.
     if (last && (!ended || round_ == 1)) {
       leave_out({.kind = StageKind::further_rounds,
                  .reason = Reason::rounds_given,
@@ -229,7 +229,7 @@ class Culling {
     return false;
   }
 
-  // True if the next visit is left out; records why.
+  // True if the next visit is left out. Then adds a stage with the reason.
   bool leaves_out(std::size_t view) {
     ViewState& place = places_[view];
     view_ = settings_.views[view].name;
@@ -260,9 +260,9 @@ class Culling {
     items_ = VisitItems(state_);
     FattenCounts counts;
     const ViewReport& report = result_.views[view];
-    // If a step draws many proxies, they wait to be fitted: those that are still undecided are then
-    // fitted together. A proxy covers each centre that lies deeper inside it than the rounding
-    // error of its corners (lemma 21).
+    // If a step draws many proxies, they are not fitted here: the canvas later fits the undecided
+    // proxies together. A proxy covers each pixel centre that lies deeper inside the proxy than the
+    // rounding error of its corners (lemma 21).
     constexpr std::size_t kLeastOfOwner = 16;
     std::optional<double> reach;
     if (canvas_.fits_proxies() &&
@@ -314,7 +314,7 @@ class Culling {
       end_at_few();
       return;
     }
-    // Plain CULLIDE clears a triangle in both passes of a view or not at all.
+    // In plain CULLIDE, a view clears a triangle in both passes or not at all.
     for (const std::uint32_t t : start_.live) {
       const std::uint8_t bits = state_.bits[t];
       agreed_[t] &= rule_.clears && bits != kCulled ? 0 : bits;
@@ -350,7 +350,7 @@ class Culling {
   void arrange_clusters() {
     if (own_owners_ || settings_.clusters.sizes.empty()) return;
     state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);
-    groups_.reserve(settings_.clusters.sizes.size());  // levels point into it
+    groups_.reserve(settings_.clusters.sizes.size());  // clusters_ has pointers into groups_
     for (const std::uint32_t size : settings_.clusters.sizes) {
       groups_.push_back(cluster_numbers(state_.live, state_.owner, size));
       clusters_.push_back({size, &groups_.back()});
@@ -361,9 +361,10 @@ class Culling {
     return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
   }
 
-  // Version of the set that the pass for `bit` stores. The other bit decides what is in the set.
+  // Returns a version of the set that the pass for `bit` stores. The other bit decides the set.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // True if the pass has to run: unless bits join across views and its stored set is unchanged.
+  // True if the pass has to run. It is left out only if bits are kept across views and its stored
+  // set is unchanged.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -442,7 +443,7 @@ class Culling {
   const Progress& progress_;
   CullResult result_;
   CullState state_;
-  bool own_owners_ = false;                         // some triangle is an owner by itself
+  bool own_owners_ = false;                         // some triangle is its own owner
   std::vector<std::vector<std::uint32_t>> groups_;  // cluster numbers, per size and triangle
   Level objects_{kObjectLevel, &state_.owner};
   std::vector<Level> clusters_;
@@ -451,8 +452,8 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  CullState start_;                   // for ClearRule::all: the state as the round began,
-  std::vector<std::uint8_t> agreed_;  // and the bits that every visit since has set
+  CullState start_;                   // for ClearRule::all: the state when the round began
+  std::vector<std::uint8_t> agreed_;  // for ClearRule::all: bits that every visit of the round set
   bool done_ = false;                 // few enough triangles are left
   bool visited_ = false;              // a view was visited
   bool first_level_ = true;           // no level has run yet

@@ -1,4 +1,4 @@
-// Builds a pass from the state of the run, runs it on the canvas, and turns its answers into bits.
+// Builds a pass from the state of a run, runs the pass on the canvas, and turns answers into bits.
 #include "core/cull/pass.h"
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 namespace farcull {
 namespace {
 
-// Calls visit(from, to) for the items of each owner, in the order of the pass that asks `ask`.
+// Calls visit(from, to) for the items from .. to - 1 of each owner. Owners ascend in the pass for F
+// and descend in the pass for L. ask: the bit of the pass.
 template <class Visit>
 void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
   const std::vector<std::uint32_t>& begin = items.owner_begin;
@@ -19,7 +20,7 @@ void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
   }
 }
 
-// Says which items a pass asks and stores. It only reads the state.
+// All that decides which items a pass asks and stores.
 struct PassQuestion {
   const CullState& state;
   const VisitItems& visit;
@@ -63,7 +64,7 @@ class PassBuilder {
   Pass& pass() { return pass_; }
   PassCost cost() const { return {pass_.draws.size(), pass_.slots}; }
 
-  // Calls clear(item) for all that the pass did not see.
+  // Calls clear(item) for all asked items that the pass did not see.
   template <class Clear>
   void for_unseen(const std::vector<std::uint8_t>& seen, const Clear& clear) const {
     for (const std::uint32_t item : undrawn_) clear(item);
@@ -129,7 +130,7 @@ class PassBuilder {
   const PassQuestion& of_;
   bool grouped_ = false;                   // false: a slot is one item
   std::vector<std::uint32_t> undrawn_;     // items that get the bit without being drawn
-  std::vector<std::uint32_t> asked_;       // items, slot after slot
+  std::vector<std::uint32_t> asked_;       // items that are drawn and asked, slot after slot
   std::vector<std::uint32_t> slot_begin_;  // per slot: its first index in asked_, if grouped
   bool anything_stored_ = false;
   Pass pass_;
@@ -198,12 +199,12 @@ PassCost run_pass(CullState& state, VisitItems& items, const Drawables& drawable
   return builder.cost();
 }
 
-// The cost of a pass of plain CULLIDE: counts as PassBuilder does, and makes no lists.
+// Counts as PassBuilder would for plain CULLIDE, but makes no lists.
 PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
                     Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};
-  PassCost cost;            // up to the last query
-  std::uint64_t drawn = 0;  // elements so far
+  PassCost cost;            // cost up to the last query
+  std::uint64_t drawn = 0;  // number of elements so far
   bool anything_stored = false;
   std::size_t next = ask == kF ? 0 : items.open.size();
   for_owners(items, ask, [&](std::size_t from, std::size_t to) {
@@ -223,7 +224,7 @@ PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawa
       drawn += open.elements;
       if (open.elements > 0) cost.draws = drawn;
     }
-    // Plain CULLIDE stores what it asks.
+    // Plain CULLIDE stores the triangles that it asks.
     drawn += open.elements + open.undrawable;
     anything_stored = anything_stored || open.elements + open.undrawable > 0;
   });

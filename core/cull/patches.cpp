@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 // Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
-// which drawing keeps; larger ones leave more pairs to boxes. Where boxes are bad, a sixteenth of
-// the object leaves the fewest candidates. The bounds keep the passes short: in smaller patches
-// nearly all triangles are at borders; of a larger patch, all pairs may be left to test.
+// and drawing keeps these. Larger patches leave more pairs to boxes. Where boxes are bad, a
+// sixteenth of the object leaves the fewest candidates. Below kLeastPatch, nearly all triangles are
+// at borders. Above kMostPatch, too many pairs of a patch may be left to test.
 constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;
 
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> triangles_of_marked(const Scene& scene) {
 
 namespace {
 
-// For each object, how many triangles of an ascending list it has.
+// Returns for each object how many triangles of the ascending list belong to it.
 std::vector<std::uint32_t> counts_in(const Scene& scene, std::span<const std::uint32_t> list) {
   std::vector<std::uint32_t> counts;
   auto at = list.begin();
@@ -64,8 +64,8 @@ Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
   Patches out{.size = size, .owner = std::vector<std::uint32_t>(scene.triangles.size())};
   const std::vector<std::uint32_t> order = spatial_order(marked, owners(scene), boxes);
   const std::vector<std::uint32_t> counts = counts_in(scene, marked);
-  std::uint32_t next = 0;  // owner
-  std::size_t at = 0;      // in `order`, where objects ascend
+  std::uint32_t next = 0;  // the next owner
+  std::size_t at = 0;      // index in `order`, where objects ascend
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
     std::fill_n(out.owner.begin() + object.first_triangle, object.triangle_count, next);

@@ -13,34 +13,33 @@
 namespace farcull {
 
 struct Patches {
-  std::uint32_t size = 0;            // triangles of a patch, at most
-  std::uint32_t count = 0;           // patches of all marked objects together
-  bool cut = false;                  // some marked object has more than one
+  std::uint32_t size = 0;            // a patch has at most this many triangles
+  std::uint32_t count = 0;           // number of patches of all marked objects
+  bool cut = false;                  // some marked object has more than one patch
   std::vector<std::uint32_t> owner;  // per triangle of the scene: its patch in an object that is
                                      // marked `self`, else its object. Ascending with the objects;
                                      // no owner has triangles of two objects.
 };
 
-/// The triangles of objects that are marked `self`, ascending.
+/// Returns the triangles of objects that are marked `self`, ascending.
 std::vector<std::uint32_t> triangles_of_marked(const Scene& scene);
 
-/// The fixed rule: a sixteenth of the largest number of `marked` triangles in one object, but at
-/// least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
+/// Returns the usual size: a sixteenth of the largest number of `marked` triangles in one object,
+/// but at least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
 std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t> marked);
 
-/// Cuts `marked` (as above) object by object, in the order of spatial_order(), into patches of
-/// `size`; the last of an object may be smaller. Other triangles of a marked object belong to its
-/// first patch. boxes: per triangle of the scene. size: 1 or more.
+/// Cuts the `marked` triangles of each object, in the order of spatial_order(), into patches of
+/// `size`. The last patch of an object may be smaller. Other triangles of a marked object belong to
+/// its first patch. boxes: per triangle of the scene. size: 1 or more.
 Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
                     std::span<const std::uint32_t> marked, std::uint32_t size);
 
-/// The pairs a < b that are left to test, sorted, each once. Their boxes overlap, and both
-/// triangles are in `live` and of different owners, or in one patch of a marked object, live or
-/// not. A pair of different owners is left out if its bits prove that it does not meet (theorem 2):
-/// L of the earlier owner's triangle, or F of the later one's.
-/// boxes: per triangle of the scene. live, bits: as in CullResult, of culling by patches.owner;
-/// empty bits: no bit is set. neighbours: false leaves out pairs of one object that share a vertex
-/// index.
+/// Returns the pairs a < b that are left to test, sorted, each once. Their boxes overlap. Either
+/// the triangles have different owners and are in `live`, or they are in one patch of a marked
+/// object. A pair of different owners is left out if a bit proves that it does not meet (theorem
+/// 2): L of the earlier owner's triangle, or F of the later owner's triangle. boxes: per triangle
+/// of the scene. live, bits: as in CullResult, of culling by patches.owner; empty bits: no bit is
+/// set. neighbours: false leaves out pairs of one object that share a vertex index.
 std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> boxes,
                                        const Patches& patches, std::span<const std::uint32_t> live,
                                        std::span<const std::uint8_t> bits, bool neighbours = true);
@@ -55,8 +54,8 @@ struct PairsToDraw {
 PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,
                         std::span<const std::uint32_t> owner);
 
-/// Removes each pair of different owners if its bits prove that it does not meet (theorem 2): L of
-/// the earlier owner's triangle, or F of the later one's. bits: as CullResult::bits.
+/// Removes each pair of different owners if a bit proves that it does not meet (theorem 2): L of
+/// the earlier owner's triangle, or F of the later owner's triangle. bits: as CullResult::bits.
 void remove_cleared(std::span<const std::uint8_t> bits, std::span<const std::uint32_t> owner,
                     std::vector<TrianglePair>& pairs);
 

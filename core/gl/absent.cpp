@@ -1,6 +1,6 @@
 // Compiled in place of the rest of this folder if farcull is built without OpenGL
-// (-DFARCULL_GL=OFF). Then no GlContext can be made, so no function that takes one is ever called.
-// Such functions exist only for the linker, and throw the same Error as the constructor.
+// (-DFARCULL_GL=OFF). In such a build no GlContext can be made. Functions that take a GlContext
+// exist only for the linker, and throw the same Error as the constructor.
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"

@@ -51,8 +51,8 @@ bool has_word(const std::string& list, const std::string& word) {
 // thread gets its name a moment after its start. LP_NUM_THREADS may be wrong: another user of Mesa
 // in this process may have opened the display when it had another value.
 
-// Reads LP_NUM_THREADS as llvmpipe does. Without it: a thread per core, but none on a single core.
-// Must be called before the first display is opened, which is when llvmpipe reads the variable.
+// Reads LP_NUM_THREADS as llvmpipe does. If it is not set, returns the number of cores, or 0 for a
+// single core. Call this before the first display is opened: llvmpipe reads the variable then.
 int asked_threads() {
   static const int asked = [] {
     constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
@@ -81,9 +81,9 @@ int running_threads() {
   return threads;
 }
 
-// Throws Error if less address space is left, as under ulimit -v, than Mesa's software device
-// takes: its libraries with LLVM, and a stack and a heap for each of up to 16 threads. With less it
-// crashes, or seems not to be installed. To find out, reserves that much and releases it untouched.
+// Throws Error if too little address space is left for Mesa's software device, as under ulimit -v.
+// The device needs room for its libraries with LLVM, and a stack and a heap for each of up to 16
+// threads. With too little room it crashes, or seems not to be installed.
 void require_memory() {
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
@@ -170,7 +170,7 @@ GlInfo read_info(const std::string& kind) {
   return info;
 }
 
-// Makes a current context on the device, or says why not.
+// Makes a context on the device and makes it current. Returns why this failed, or an empty text.
 std::string open(EGLDeviceEXT device, EglContext& out) {
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
@@ -218,7 +218,7 @@ struct GlContext::Handles {
   GlInfo info;
 };
 
-// What is current: EGL has one current context and one bound rendering API per thread.
+// The state of EGL in this thread: one current context and one bound rendering API.
 struct GlCurrent::Before {
   EGLenum api = eglQueryAPI();
   EGLDisplay display = eglGetCurrentDisplay();
@@ -335,7 +335,7 @@ std::vector<GlDevice> GlContext::list_devices() {
 }
 
 int driver_threads(const std::string& renderer) {
-  // Mesa's zink (OpenGL on Vulkan) also names llvmpipe if it draws with it.
+  // If Mesa's zink (OpenGL on Vulkan) draws with llvmpipe, its renderer text names llvmpipe.
   if (renderer.find("llvmpipe") == std::string::npos) return 0;
   return std::max(asked_threads(), running_threads());
 }

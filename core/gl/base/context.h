@@ -10,11 +10,11 @@ namespace farcull {
 /// One EGL device of this machine; `--device` takes its index.
 struct GlDevice {
   int index = 0;
-  std::string kind;        // "software" or "hardware"
-  std::string extensions;  // EGL device extensions
-  std::string drm;         // device file, if it has one
-  bool usable = false;     // a context of the version that farcull needs could be made
-  std::string vendor, renderer, version;  // of that context
+  std::string kind;                       // "software" or "hardware"
+  std::string extensions;                 // EGL device extensions
+  std::string drm;                        // device file, if it has one
+  bool usable = false;                    // farcull can make a context on this device
+  std::string vendor, renderer, version;  // texts of the context
   std::string problem;                    // why it is not usable
 };
 
@@ -31,8 +31,8 @@ struct GlInfo {
 };
 
 /// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent of it lives. Besides the caller's own context, a thread can use any number of contexts
-/// one after the other. Several threads can use one context, one at a time.
+/// GlCurrent object of it lives. A thread can use several contexts one after the other. Several
+/// threads can use one context, one thread at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of
@@ -45,8 +45,7 @@ class GlContext {
 
   const GlInfo& info() const;
 
-  /// Every device, each tried with a context of its own; an empty list if there are none. Throws
-  /// Error without EGL.
+  /// Returns all devices. Tries to make a context on each device. Throws Error without EGL.
   static std::vector<GlDevice> list_devices();
   /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
   static bool hardware_listed();
@@ -57,9 +56,9 @@ class GlContext {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Makes a context current in this thread for as long as the object lives. Then restores what was
-/// current before: no context, another GlContext, or a context of the caller with its surfaces and
-/// its rendering API. Objects may be nested. All code that calls GL holds such an object.
+/// Makes a context current in this thread while the object lives. Then restores the previous state:
+/// no context, another GlContext, or a context of the caller with its surfaces and its rendering
+/// API. Objects may be nested. All code that calls GL holds such an object.
 class GlCurrent {
  public:
   /// Throws Error if the context cannot be made current: another thread is using it, or a
@@ -76,13 +75,14 @@ class GlCurrent {
   std::unique_ptr<Before> before_;  // null: the context was already current
 };
 
-/// The number of threads with which the driver draws in this process: those of Mesa's llvmpipe, or
-/// as many as LP_NUM_THREADS asks for if that is more; 0 if the renderer does not use llvmpipe.
-/// Such threads may write to freed memory (docs/drivers.md), so a device that has them guarantees
-/// nothing (assumption A10).
+/// Returns the number of threads with which Mesa's llvmpipe draws in this process: the threads that
+/// run, or the number that LP_NUM_THREADS asks for, whichever is larger. Returns 0 if the renderer
+/// does not use llvmpipe. Such threads may write to freed memory (docs/drivers.md), so a device
+/// with such threads guarantees nothing (assumption A10).
 int driver_threads(const std::string& renderer);
 
-/// A text on the risk of these threads and its remedy, without a full stop; empty without threads.
+/// Returns a text on the risk of the driver's threads and the remedy, without a full stop. Returns
+/// an empty text if driver_threads() is 0.
 std::string risk_of_threads(const std::string& renderer);
 
 /// Reads GL's error flags and the reset status. Throws Error naming `stage` unless both are clean

@@ -1,5 +1,5 @@
-// Each fault replaces the entry points that it needs; a thread-local value says which call is to
-// fail. In threads without that value a replacement passes the call on.
+// Each fault replaces the entry points that it needs. The thread-local `plan` says which call
+// fails. In threads without a plan, a replacement passes the call on to the driver.
 #include "core/gl/base/driver_fault.h"
 
 #include <optional>
@@ -15,7 +15,7 @@ struct Plan {
   Kind kind;
   std::optional<std::size_t> strike;  // number of the call that fails; empty: none
   std::size_t calls = 0;              // counted since strike()
-  bool query_lost = false;            // the current query was not begun, so it is not ended
+  bool query_lost = false;            // the current query was not begun, so it must not be ended
 
   bool now() { return strike && calls++ == *strike; }
 };
@@ -32,8 +32,9 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// Every compute program of farcull has this line, which ends an invocation when its work items run
-// out. The replacement also ends it before the item far_lost_item - 1; 0: before no item.
+// Every compute program of farcull has the line kEnd, which ends an invocation when its work items
+// run out. kEarlierEnd ends the invocation also before item far_lost_item - 1. If far_lost_item is
+// 0, it ends no invocation early.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";

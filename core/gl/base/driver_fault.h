@@ -18,8 +18,8 @@ namespace farcull {
 template <auto* Pointer, class Function = std::remove_pointer_t<decltype(Pointer)>>
 class GlEntryPoint;
 
-/// Puts `replacement` in place of *Pointer for the lifetime of the object; one object per entry
-/// point at a time. The replacement calls the driver by original().
+/// Puts `replacement` in place of *Pointer for the lifetime of the object. An entry point can have
+/// only one such object at a time. The replacement calls the driver by original().
 template <auto* Pointer, class Result, class... Arguments>
 class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
  public:
@@ -58,15 +58,15 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 enum class DriverFaultKind {
   lost_draw,           // a draw call never runs
   lost_dispatch,       // a compute dispatch never runs
-  oversized_dispatch,  // a compute dispatch beyond the device's limit
-  unfinished_item,     // an invocation of a dispatch ends before one of its work items
+  oversized_dispatch,  // a compute dispatch exceeds the device's limit
+  unfinished_item,     // an invocation of a dispatch ends before one of its work items is done
   lost_query,          // an occlusion query is never issued
   blind_queries,       // all occlusion queries answer zero, from strike() on
 };
 
-/// Only calls of the thread that made the object fail; calls of other threads reach the driver
-/// unchanged. An object of another thread waits until this one is destroyed. For unfinished_item,
-/// programs must be compiled while the object lives.
+/// Makes GL calls fail in the thread that made the object. Calls of other threads reach the driver
+/// unchanged. The constructor waits until no other object exists. For unfinished_item, compile the
+/// programs while the object lives.
 class DriverFault {
  public:
   explicit DriverFault(DriverFaultKind kind);
@@ -74,8 +74,8 @@ class DriverFault {
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;
 
-  /// Makes one draw, dispatch or query (by the kind of fault) fail: the one with this number,
-  /// counted from 0 from now on. No call fails before strike().
+  /// Makes a later draw, dispatch or query fail, depending on the kind of fault. `call` is its
+  /// number, counted from 0 after strike(). No call fails before strike().
   void strike(std::size_t call = 0);
 
  private:

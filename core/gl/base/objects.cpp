@@ -11,18 +11,18 @@ namespace {
 
 constexpr const char* kReport = "report this driver's log with the output of `{doctor}`";
 
-// Names for what GLSL and C++ write differently, such as out parameters. With them kernels compile
-// as C++, too (core/base/glsl_shim.h).
+// Macros for what GLSL and C++ write differently, such as out parameters. core/base/glsl_shim.h
+// defines them for C++, so kernels compile in both languages.
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
     "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n#define FAR_CONSTANT const float\n"
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
-// FAR_AT: an element of the array at the end of a storage block; the last one if `index` is larger.
-// A lost upload, binding or uniform is noticed only when results are read. Until then an index from
-// a buffer may be anything, and a device without robust access must not use it outside the buffer.
-// Our storage buffers are never empty.
+// FAR_AT is the element `index` of an array at the end of a storage block, or the last element if
+// `index` is too large. A lost upload, binding or uniform is noticed only when results are read.
+// Until then an index that comes from a buffer may be wrong, and must not lead outside the buffer.
+// The storage buffers of farcull are never empty.
 constexpr const char* kElement =
     "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
 
@@ -36,8 +36,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Binds the buffer that an update is for, and asks GL whether it is bound. If it were not, the
-// update would go to the buffer that was bound before.
+// Binds the buffer `name`. Throws Error if GL says that another buffer is bound: an update would go
+// to that buffer.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;

@@ -39,7 +39,8 @@ class GlName {
   GLuint name_ = 0;
 };
 
-/// Calls one of GL's functions that delete several objects. They are pointers of libepoxy.
+/// Deletes one object by a GL function that deletes several. Delete: a function pointer of
+/// libepoxy.
 template <auto* Delete>
 void delete_one(GLuint name) {
   (*Delete)(1, &name);
@@ -72,10 +73,11 @@ struct ShaderText {
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 
-/// Gives a shader storage buffer new contents, and at least 16 bytes, so that it can be bound.
+/// Gives a shader storage buffer new contents. Its size is at least 16 bytes, so that it can be
+/// bound.
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
 
-/// A number that is unique in this process (among the first 2^32 calls).
+/// Returns a number that is unique in this process (for the first 2^32 calls).
 std::uint32_t gl_number();
 
 /// Bytes of a storage buffer before its data: its tag and three zero words.
@@ -89,8 +91,8 @@ constexpr std::size_t kTagBytes = 16;
 class GlStore {
  public:
   /// Makes room for `wanted` bytes of data. If the store has to grow, its new size is `wanted` or
-  /// 1.5 times the old size (at most `most`), whichever is larger. Returns true if it has grown:
-  /// then the contents are undefined. If this throws, the store is unchanged.
+  /// 1.5 times the old size (at most `most`), whichever is larger. Returns true if the store has
+  /// grown. Its contents are then undefined. If this throws, the store is unchanged.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
   /// Sets the first `bytes` bytes of data, a multiple of 4, to 0.
@@ -107,13 +109,13 @@ class GlStore {
   std::size_t bytes_ = 0;
 };
 
-// The echo (assumption A7): the device returns a hash of what a program read, and of what was sent,
-// so that lost commands are noticed. kEchoGlsl does the same arithmetic in shaders.
+// The echo (assumption A7) is a hash that the device returns: of the values that a program read,
+// and of the data that were sent. A wrong echo reveals a lost command. kEchoGlsl computes it in
+// shaders.
 
-/// Mixes a word with its place (the finalizer of MurmurHash3): a bijection of the word, in which
-/// each bit of the word can change every bit of the result. So it is unlikely that changes of a few
-/// words cancel in a sum. If words were only multiplied, changes of signs or of small numbers would
-/// often cancel.
+/// Mixes a word with its place (the finalizer of MurmurHash3). The result is a bijection of the
+/// word, and each bit of the word can change every bit of the result. So changes of a few words
+/// hardly ever cancel in a sum.
 inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   std::uint32_t mixed = word ^ place * 0x9e3779b9u;
   mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
@@ -135,7 +137,7 @@ uint far_mixed(uint word, uint place) {
 /// The sum of words, each mixed with its place.
 struct GlEcho {
   std::uint32_t sum = 0;
-  std::uint32_t place = 0;  // of the word that comes next
+  std::uint32_t place = 0;  // place of the next word
 
   template <class Number, std::size_t N>
   void add(const std::array<Number, N>& words) {

@@ -1,11 +1,11 @@
 // Stores or asks one fragment, by these defines:
-// FAR_PROXY: the depth comes from the solid's data, by its function (in front of this text). It is
-// the entry when storing, the exit when asking.
-// FAR_ASK: asks instead of storing. The define's value is a slack (kAskedBehind), by which the
-// asked depth lies behind the exit's.
-// FAR_FLAGS: an asked fragment that is seen raises its slot's flag: it writes this pass's serial
-// number there. Proxies are compared with the stored depth here, triangles by the depth test.
-// Without FAR_FLAGS an occlusion query decides.
+// FAR_PROXY: the solid's function (in front of this text) computes the depth: the entry when
+// storing, the exit when asking.
+// FAR_ASK: asks instead of storing. Its value is a slack (kAskedBehind): the asked depth is this far
+// behind the mapped exit.
+// FAR_FLAGS: an asked fragment that is seen writes this pass's serial number to its slot's flag.
+// For proxies this program compares depths, for triangles the depth test does. Without FAR_FLAGS
+// an occlusion query decides.
 // FAR_VALUE: also writes out the fragment's depth in px.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
@@ -61,7 +61,7 @@ void main() {
     precise float mapped = 0.5 + z;
     depth = clamp(mapped, 0.25, 0.75);
 #ifdef FAR_ASK
-    // The stored depth was mapped by another program, which may have rounded otherwise.
+    // Another program mapped the stored depth, and may have rounded differently.
     precise float behind = depth + FAR_ASK;
     depth = behind;
 #endif

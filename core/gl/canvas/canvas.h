@@ -15,13 +15,14 @@
 namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
-/// How the canvas learns whether an asked slot is seen. flags: a fragment raises its slot's flag.
-/// Proxies compare with the stored depth in the shader (float32 only: a comparison with a texel of
-/// a 24-bit texture loses equal depths); triangles at fixed depth rely on early fragment tests.
-/// occlusion: a GL_ANY_SAMPLES_PASSED query per slot, many in flight, as published.
+/// How the canvas learns whether an asked slot is seen.
+/// - flags: a fragment that is seen raises its slot's flag. For proxies the shader compares depths
+///   (float32 only: with a 24-bit texture, equal depths may differ). For triangles at fixed depth,
+///   early fragment tests decide.
+/// - occlusion: a GL_ANY_SAMPLES_PASSED query per slot, as published.
 enum class QueryMode { flags, occlusion };
 
-/// The define that makes canvas.frag ask. Its value is the slack `behind`, as bits.
+/// Returns the define that makes canvas.frag ask. Its value is the slack `behind`, as bits.
 inline std::string ask_define(float behind = kAskedBehind) {
   return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
 }
@@ -32,7 +33,7 @@ struct GlCanvasOptions {
   /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
   /// GL_INTEL_conservative_rasterization.
   bool conservative = false;
-  /// Bytes that a storage block may hold at most; 0: the device's own limit.
+  /// A storage block has at most this many bytes; 0: the device's own limit.
   long storage_limit = 0;
 };
 
@@ -40,11 +41,11 @@ struct CanvasState;
 
 class GlCanvas final : public Canvas {
  public:
-  /// `mode` and `solid`: those of the fattener that makes the drawables. Throws Error if the
-  /// options do not go together or the device refuses. The context must outlive the canvas, which
-  /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
-  /// depths() everything on the device is dropped. The next begin() makes it again; until then the
-  /// other functions throw std::logic_error.
+  /// `mode` and `solid` are those of the fattener that makes the drawables. Throws Error if the
+  /// options contradict each other or the device refuses. The context must outlive the canvas. Each
+  /// call makes the context current. After an exception of begin(), run(), samples() or depths(),
+  /// all data on the device are dropped. Then the other functions throw std::logic_error until the
+  /// next begin().
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;

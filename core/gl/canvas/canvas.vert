@@ -9,7 +9,7 @@ layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
 layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
 uniform uint u_program;  // a number that no other program of the process has
-uniform ivec4 u_window;  // from here on: of the fragment stage
+uniform ivec4 u_window;  // this and the later uniforms of FAR_ECHO are those of the fragment stage
 uniform vec2 u_centre;
 #ifdef FAR_FLAGS
 layout(std430, binding = 2) buffer Flags { uvec4 flags_tag; uint flags[]; };
@@ -80,7 +80,7 @@ void main() {
 #endif
   v_slot = item.y;
 #ifdef FAR_ECHO
-  // Outside the condition: llvmpipe then reads once for all vertices that it computes together.
+  // Reads outside the condition, so llvmpipe reads once for all vertices that it computes together.
   uint word = head.y, echo = far_echo();
   if (gl_VertexID == 0) FAR_AT(report, word) = echo;
 #endif

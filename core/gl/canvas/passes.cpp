@@ -122,11 +122,10 @@ class Layout {
   bool fresh_ = true;      // the next draw starts a batch
 };
 
-// The draw list of `pass`. With `marks`, it begins with a store and ends with an ask; if the
-// caller's steps do not, a step with control items only is added (state.h). The first store draws
-// this pass's mark, and the first ask looks for the mark of the previous pass; canvas.odd says
-// which of the pixels 1 and 2 has which mark. Without `marks`, no step is added, and no mark is
-// drawn or asked for.
+// Returns the draw list of `pass`. With `marks`, the list begins with a store and ends with an ask:
+// if the caller's steps do not, a step with only control items is added (state.h). The first store
+// draws this pass's mark, and the first ask looks for the previous pass's mark. Without `marks`, no
+// step is added, and marks are neither drawn nor asked.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -167,11 +166,11 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   begun = true;
 }
 
-// Selects the stored elements with these bytes; false: the caller must write them. A scene that
-// does not change has one set of elements for each view.
+// Selects stored elements with these bytes. Returns false if there are none: the caller must write
+// them. A scene that does not change has one set of elements for each view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // sets that are kept besides `current`
-  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
+  constexpr std::size_t kEarlier = 2;                       // most sets in `earlier`
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // most bytes of a set in `earlier`
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
   };
@@ -218,8 +217,8 @@ std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   return primitives_of_pass;
 }
 
-// Draws a batch with an occlusion query for each slot. A slot's draws may be spread over batches of
-// its step: its query stays open until another slot comes or the step ends.
+// Draws a batch with an occlusion query for each slot. A slot's draws may be in several batches of
+// a step, so its query stays active until another slot comes or the step ends.
 void CanvasState::draw_queries(const CanvasPass& laid, const CanvasBatch& batch,
                                std::uint32_t& open) {
   const GpuDraw* const list = &laid.list[batch.offset + 1];
@@ -290,7 +289,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   return seen;
 }
 
-// Waits, reads the report, and adds the device's time between the stamps 0 and 1 to `work`.
+// Waits for the device, reads the report, and adds the time between stamps 0 and 1 to `work`.
 std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   const std::uint64_t bytes = report->bytes_in_all();
   std::vector<std::uint8_t> seen = report->read(stage);
@@ -315,7 +314,7 @@ std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;
     glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &result);
-    // The name of a query that was never issued has no object, so `result` keeps its value.
+    // If a query was never issued, its name has no object, and `result` keeps its value.
     if (result == kNone) throw_lost("pass", "query " + std::to_string(i) + " gave no answer");
     seen[i] = result != 0;
   }

@@ -34,7 +34,7 @@ void bind_texture(GLuint name) {
   require(asked(GL_TEXTURE_BINDING_2D) == static_cast<GLint>(name), "the texture");
 }
 
-// The sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
+// Returns the sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
 std::uint32_t sum_of(std::span<const std::byte> data) {
   std::uint32_t sum = 0;
   const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
@@ -63,7 +63,7 @@ void wait_for_device(const std::string& stage) {
               "choose a smaller resolution, or another {device}");
 }
 
-// The capability that turns conservative rasterization on. Throws Error if the device has none.
+// Returns the GL capability for conservative rasterization. Throws Error if the device has none.
 GLenum conservative_switch() {
   if (epoxy_has_gl_extension("GL_NV_conservative_raster")) return GL_CONSERVATIVE_RASTERIZATION_NV;
   if (epoxy_has_gl_extension("GL_INTEL_conservative_rasterization"))
@@ -87,8 +87,8 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // The range of a piece begins 16 bytes before its data, at a multiple of the alignment. These
-  // bytes are the tag or, for later pieces, the end of the previous piece.
+  // The range of a piece begins 16 bytes before its data, at a multiple of the alignment. These 16
+  // bytes are the tag for the first piece, and the end of the previous piece for later pieces.
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -106,7 +106,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this write is lost, read() finds counts that include those of the last pass.
+  // If this write is lost, read() finds counts that include the counts of the last pass.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -388,7 +388,7 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   if (with_flags) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFlags, flags.name());
 }
 
-// before: the batch that was bound last, or null. What both share is not bound again.
+// before: the batch that was bound last, or null. Bindings that `before` has are not made again.
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());

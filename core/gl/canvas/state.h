@@ -39,21 +39,21 @@ struct GpuDraw {
 struct CanvasBatch {
   std::size_t step;
   Verb verb;
-  std::size_t chunk;   // element buffer; kExtras for the canvas's own elements
-  std::size_t offset;  // of its head in the draw list; its draws follow
-  std::size_t count;   // of draws
+  std::size_t chunk;   // index of the element buffer; kExtras for the canvas's own elements
+  std::size_t offset;  // index of the batch's head in the draw list; the draws follow the head
+  std::size_t count;   // number of draws
 };
 constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 
 /// All that a pass sends.
 struct CanvasPass {
   std::uint32_t serial = 0;  // unique among the passes of the process
-  /// Two entries in place of the store's tag, then the batches, each with a head in front: {serial,
-  /// word of the report}.
+  /// Two entries in place of the store's tag, then the batches. Each batch begins with a head:
+  /// {serial, word of the report}.
   std::vector<GpuDraw> list;
   std::vector<float> own;  // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  /// The caller's slots, with marks a slot that must stay unseen, and those of control items.
+  /// Number of slots: of the caller, of control items, and (with marks) one that must stay unseen.
   std::uint32_t slots = 0;
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
@@ -65,7 +65,7 @@ constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2, kReport = 3;
 
 /// A storage buffer for what the device reports. Every batch of draws and every dispatch writes an
 /// echo into it (GlEcho: a checksum of what it read). A dispatch also adds how many of its work
-/// items finished. The buffer holds the packed flags of a pass, too.
+/// items finished. The buffer also holds the packed flags of a pass.
 class CanvasReport {
  public:
   static constexpr std::uint32_t kHead = 2;  // words before the echoes: items finished, sum
@@ -78,18 +78,19 @@ class CanvasReport {
   void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
   /// The number of dispatches that expect() makes for this many bytes.
   std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
-  /// Lets the device sum what the store holds from its beginning; read() compares the sum with that
-  /// of `data` (a multiple of 16 bytes).
+  /// Lets the device sum the first data.size() bytes of the store. read() compares this sum with
+  /// the sum of `data` (a multiple of 16 bytes).
   void expect(const GlStore& store, std::span<const std::byte> data);
-  /// The echo that a batch writes to word kHead + batch.
+  /// Sets the echo that a batch should write to word kHead + batch.
   void expect_batch(std::size_t batch, std::uint32_t echo) { echoes_[batch] = echo; }
-  /// Lets the device pack `count` flags: 1 if one holds `serial`. Must come last before read().
+  /// Lets the device pack `count` flags into bits: 1 if a flag equals `serial`. Call it last before
+  /// read().
   void pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count);
   /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are as expected,
   /// every work item finished and GL has no error. Returns the flags of pack(), a byte each.
   std::vector<std::uint8_t> read(const std::string& stage);
   const GlStore& store() const { return store_; }
-  /// Totals of all passes: dispatches that were started, and bytes that were read.
+  /// The number of dispatches of all passes. bytes_in_all(): the number of bytes that were read.
   std::uint64_t dispatches_in_all() const { return dispatches_; }
   std::uint64_t bytes_in_all() const { return bytes_; }
 
@@ -101,9 +102,9 @@ class CanvasReport {
   std::size_t block_, piece_;
   std::array<GlProgram, 2> programs_;  // by step: sum, pack
   GlStore store_;
-  std::vector<std::uint32_t> echoes_;     // expected: batches, then dispatches
-  std::uint32_t finished_ = 0, sum_ = 0;  // expected
-  std::uint32_t flags_ = 0;               // how many are packed
+  std::vector<std::uint32_t> echoes_;     // expected echoes: of batches, then of dispatches
+  std::uint32_t finished_ = 0, sum_ = 0;  // expected values
+  std::uint32_t flags_ = 0;               // number of packed flags
   std::uint64_t dispatches_ = 0, bytes_ = 0;
 };
 
@@ -111,13 +112,13 @@ class CanvasReport {
 struct CanvasProgram {
   GlProgram name;
   std::uint32_t number = 0;  // unique among the programs of the process
-  std::uint32_t echo = 0;    // of the uniforms that belong to the window
+  std::uint32_t echo = 0;    // echo of the uniforms that belong to the window
 };
 
-/// Elements that were sent, so that the same ones are not sent twice.
+/// Elements that were sent, so that no elements are sent twice.
 struct CanvasElements {
   std::vector<GlStore> chunks;
-  std::vector<std::byte> bytes;  // the bytes that were sent to them
+  std::vector<std::byte> bytes;  // the bytes that were sent to the chunks
 };
 
 struct CanvasState {
@@ -132,12 +133,12 @@ struct CanvasState {
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
   int target_width = 0, target_height = 0;
-  bool odd = false;                     // which of pixels 1 and 2 the next pass marks
-  CanvasElements current;               // of the last begin()
-  std::vector<CanvasElements> earlier;  // of earlier calls, for use again
-  std::size_t per_chunk = 0;            // elements
+  bool odd = false;                     // says which of pixels 1 and 2 the next pass marks
+  CanvasElements current;               // elements of the last begin()
+  std::vector<CanvasElements> earlier;  // elements of earlier calls, which may be used again
+  std::size_t per_chunk = 0;            // number of elements
   std::size_t block = 0;                // bytes of data in a storage block
-  std::size_t alignment = 256;          // of a storage buffer range, in bytes
+  std::size_t alignment = 256;          // alignment of a storage buffer range, in bytes
   GLenum conservative = 0;  // GL capability for conservative rasterization; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
@@ -152,10 +153,9 @@ struct CanvasState {
 
   std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
-  // With flags, the fragment program of a proxy computes the depth, so it also compares it with the
-  // stored depth, which it reads from the texture. Triangles have a fixed depth, so the depth test
-  // can decide before the fragment program raises the flag. Then no step reads a texture that
-  // another step draws to, and no step waits for another.
+  // True if the fragment program compares the depth of a proxy with the stored depth, read from the
+  // texture. Triangles have a fixed depth, so the depth test decides before the fragment program
+  // raises the flag: no step reads a texture that another step draws to, and none has to wait.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }
@@ -179,8 +179,8 @@ struct CanvasState {
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
   void stamp(std::size_t place);
-  /// Milliseconds on the device between the two stamps; negative if unknown. The device must have
-  /// finished all commands. Throws Error if GL fails.
+  /// Returns the milliseconds between the two stamps, negative if unknown. Precondition: the device
+  /// has finished all commands. Throws Error if GL fails.
   double stamped_ms() const;
 
   // begin() uploads the elements and prepares the targets. All four functions throw Error if the

@@ -51,8 +51,8 @@ std::uint32_t packed(const Rgba& colour, double light) {
   return channel(colour.r) | channel(colour.g) << 8 | channel(colour.b) << 16 | 255u << 24;
 }
 
-// The factor by which light scales a triangle's colour, the same on both sides. Degenerate
-// triangles have no normal and keep their colour.
+// Returns the factor by which light scales a triangle's colour, equal on both sides. Returns 1 for
+// degenerate triangles, which have no normal.
 double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
@@ -99,7 +99,7 @@ class Batch {
   }
 
  private:
-  // The segment widened by `half` px on all sides.
+  // Adds the segment from a to b, widened by `half` px on all sides.
   void strip(const Vec3& a, const Vec3& b, double half) {
     Eigen::Vector2d along = (b - a).head<2>();
     const double length = along.norm();
@@ -155,7 +155,8 @@ Image filtered(const std::vector<Rgba>& texels, int width, int height, int sampl
   return out;
 }
 
-// The window, deepened to hold all triangles: they may reach beyond the boxes it was made for.
+// Returns the window with a depth range that holds all triangles. Some may leave the window's
+// boxes.
 Window deepened(Window window, const Scene& scene, std::span<const PictureTriangle> triangles) {
   const Window before = window;
   for (const PictureTriangle& t : triangles) {

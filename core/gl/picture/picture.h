@@ -14,7 +14,7 @@ namespace farcull {
 
 struct Rgba {
   std::uint8_t r = 0, g = 0, b = 0;
-  std::uint8_t a = 255;  // 0: nothing is here; colours are not multiplied by it
+  std::uint8_t a = 255;  // 0: no triangle is here; r, g and b are not multiplied by a
   bool operator==(const Rgba&) const = default;
 };
 
@@ -33,7 +33,7 @@ struct Image {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Mixes `part` (0 to 1) of the colour into a pixel that is opaque.
+/// Mixes `part` (0 to 1) of the colour into an opaque pixel.
 inline void blend(Rgba& pixel, const Rgba& colour, double part) {
   const auto mix = [part](std::uint8_t below, std::uint8_t above) {
     return static_cast<std::uint8_t>(below + (above - below) * part + 0.5);
@@ -45,9 +45,9 @@ struct PictureTriangle {
   std::uint32_t triangle = 0;
   Rgba colour;         // drawn opaque; its `a` is ignored
   bool shaded = true;  // Lambert on both sides, and ambient light; false: the colour as it is
-  float outline = 0;   // px: the width of strips along its edges. So even a small, narrow or
-                       // degenerate triangle covers a disc of this diameter
-  float lift = 0;      // px by which it is moved towards the eye, in front of what it touches
+  float outline = 0;   // px: the width of strips along its edges, so that even a degenerate
+                       // triangle covers a disc of this diameter
+  float lift = 0;      // px by which the triangle is moved towards the eye
 };
 
 /// Largest width and height of a picture, px. Every OpenGL 4.3 can draw it with samples = 4.

@@ -200,7 +200,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Damage to memory cannot be seen from outside; the driver's threads are one known cause of it.
+// Damage to memory cannot be seen from outside. The driver's threads are a known cause of damage.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

@@ -202,7 +202,7 @@ ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
       "depths say so");
 }
 
-// Single-pixel queries, all in flight before the first is read. In every other one nothing passes.
+// Issues all single-pixel queries before the first is read. In every other query nothing passes.
 ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& options) {
   Random random(options.seed + 9);
   constexpr std::size_t kQueries = 3000;

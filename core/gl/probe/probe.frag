@@ -1,7 +1,7 @@
 // Fragments of proxies that canvas.vert placed.
 // FAR_COVERAGE: counts the fragments of the pixel that gl_FragCoord names, and writes that pixel's
-// number to the pixel that the rasterizer chose, so that both can be compared. FAR_DISCARD: has a
-// discard, which never happens.
+// number to the pixel that the rasterizer chose. A difference shows an error of gl_FragCoord.
+// FAR_DISCARD: has a discard, which never happens.
 // FAR_DEPTH: writes a given depth, and a colour that marks the pixel if the depth test passes.
 // (Buffer writes would also happen for fragments that fail a late depth test.)
 // FAR_ARITHMETIC: stores the results of the operations that kernels use, as bits, unchanged.

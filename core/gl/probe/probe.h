@@ -1,6 +1,6 @@
-// Probes of the device assumptions A1 to A10. Each probe tries to catch the device breaking one of
-// them, and reports the worst measured value and the bound that the proofs need (docs/budget.md). A
-// probe can refute an assumption, never prove it.
+// Probes of the device assumptions A1 to A10. Each probe tries to catch the device breaking an
+// assumption. It reports the worst measured value and the bound that the proofs need
+// (docs/budget.md). A probe can refute an assumption, but never prove it.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace farcull {
 struct ProbeResult {
   std::string assumption;  // "A1" .. "A10"
   std::string name;
-  double measured = 0;  // the worst seen, in `unit`
+  double measured = 0;  // the worst measured value, in `unit`
   double bound = 0;     // in `unit`
   std::string unit;
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
@@ -26,13 +26,13 @@ struct ProbeResult {
   bool broke_off = false;     // an Error ended the probe: nothing is known
 };
 
-/// The options from snap_bits on are for tests, which make every probe fail with them.
+/// The options from snap_bits on are for tests: each option makes a probe fail.
 struct ProbeOptions {
   std::uint64_t seed = 1;
   std::string only = {};  // one assumption, as in "A3"; empty: all
   bool brief = false;     // about a third of the samples
 
-  int snap_bits = 0;                // A2: demand 2^-snap_bits px; 0: what the device says
+  int snap_bits = 0;                // A2: demands 2^-snap_bits px; 0: the device's own bits
   bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
   bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
   bool fat_zero_area = false;       // A3: the triangles without area get an area
@@ -69,15 +69,14 @@ inline SolidCase solid_case_at(std::size_t i) {
           {}};
 }
 
-/// The answers of `solid` for kSolidCases cases, each with the centre of solid_case_at. This
-/// function and the next one make the context current while they run, and throw Error as GlCanvas
-/// does.
+/// Returns the answers of `solid` for kSolidCases cases. Case i has the centre of solid_case_at(i).
+/// Makes the context current while it runs, and throws Error as GlCanvas does.
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
-/// Stores one solid and asks another in each of kSolidCases pixels, by the programs of the method,
-/// in a window of this depth (px). Per pixel 1 if the asked one is seen with flags, with queries
-/// and with queries on 24 bits. If both are the same solid and the line hits it, it must be seen.
+/// In each of kSolidCases pixels, stores one solid and asks another in a window of this depth (px).
+/// Returns per pixel 1 if the asked solid is seen in three ways: with flags, with queries, and with
+/// queries on 24 bits. A solid must be seen behind itself if the pixel's line hits it.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

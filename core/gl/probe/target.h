@@ -39,7 +39,7 @@ struct Random : RandomNumbers {
 /// The float that is `steps` floats above x (below x if negative).
 float neighbour(float x, int steps);
 
-/// The worst measured value, where NaN counts as infinite; or the number of wrong results.
+/// The worst measured value (NaN counts as infinite), or the number of wrong results.
 struct Worst {
   double value = 0;
   std::uint64_t samples = 0;
@@ -57,7 +57,7 @@ struct Worst {
 ProbeResult result(const std::string& assumption, const std::string& name, const Worst& measured,
                    double bound, const std::string& unit, const std::string& note);
 
-/// The result of a probe that an Error ended: it failed.
+/// Returns the result of a probe that failed because an Error ended it.
 ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error);
 
 /// A form of canvas to probe: how it asks what is visible, and its depth format.
@@ -79,11 +79,11 @@ void on_canvases(const std::string& assumption, const std::string& kind, CanvasP
                  const GlContext& context, const ProbeOptions& options,
                  std::vector<ProbeResult>& out);
 
-/// A proxy with these corners (px from the target's centre) and a solid of zeros. Callers may set
-/// numbers of the solid: s0 = (-, -, entry, exit), s4 = (-, fixed, depth, -).
+/// Returns a proxy with these corners (px from the target's centre) and a solid of zeros. Callers
+/// may set numbers of the solid: s0 = (-, -, entry, exit), s4 = (-, fixed, depth, -).
 Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);
-/// Pixel i, counted in rows, of a square target of this side (px, even).
+/// Returns a proxy over pixel i, counted in rows, of a square target of this side (px, even).
 Proxy pixel_box(int i, int side);
 /// One proxy per pixel of a square target or window, in rows.
 std::vector<Proxy> pixel_proxies(int side);
@@ -113,7 +113,7 @@ class Target {
 
   GLuint depth_texture() const { return depth_; }
   std::vector<std::uint32_t> colour() const;
-  /// Depths as bits: of a float, or the buffer's integer scaled to 32 bits. Both keep the order.
+  /// Returns depths as bits in the order of the depths: of a float, or of an integer of 32 bits.
   std::vector<std::uint32_t> depths() const;
 
  private:
