@@ -74,8 +74,6 @@ struct NativeLines {
 void draw_triangles_native(const NativeJob& job);
 constexpr int kNativeSubpixelBits = 8;
 
-// ---- the canvas ----
-
 struct NativeCanvasOptions {
   int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
   /// Raw triangles have a fragment in every pixel that they touch (draw_triangles_native).

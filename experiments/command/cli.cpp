@@ -82,8 +82,6 @@ class HelpCommand {
   std::vector<std::string> words_;
 };
 
-// ---- the command line ----
-
 constexpr const char* kOutOfMemory =
     "memory: there is not enough; use a smaller scene or resolution, a higher limit (ulimit -v) or "
     "a machine with more memory";

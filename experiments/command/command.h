@@ -346,8 +346,6 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
 
-// ---- `farcull picture` ----
-
 class PictureCommand {
  public:
   CLI::App* add_to(CLI::App& app);

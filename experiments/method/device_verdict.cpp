@@ -239,8 +239,6 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
   return out;
 }
 
-// ---- the verdict ----
-
 std::string utc_now() {
   const std::time_t seconds =
       std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

@@ -49,8 +49,6 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {},
                                     bool brief = false);
 
-// ---- the verdict ----
-
 /// Returns the current time, as in 2026-01-31T12:00:00Z.
 std::string utc_now();
 

@@ -76,8 +76,6 @@ struct Candidates {
   }
 };
 
-// ---- the record ----
-
 struct RunTimes {
   double setup = 0;     // making the context and shaders
   double cull = 0;      // planning and finding the candidates

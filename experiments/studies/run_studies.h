@@ -51,8 +51,6 @@ struct MergeSummary {
 /// - `out` or a journal of `out` exists already.
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out);
 
-// ---- runs ----
-
 struct Shard {
   int index = 1, of = 1;  // 1 <= index <= of
 

@@ -208,8 +208,6 @@ bool is_whole(const Measurement& row) {
   return rounds_in(row).value_or(kRounds) >= kRounds || row.times.value("no_times", false);
 }
 
-// ---- the store ----
-
 bool StoredStudy::complete() const {
   return rows.size() == declaration.points.size() &&
          std::ranges::all_of(rows, [](const Row& row) { return is_whole(row.measurement); });

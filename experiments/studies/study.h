@@ -280,8 +280,6 @@ Measurement stored(const PointResult& result);
 /// `violations` is above 0, or a contestant did not answer a question.
 bool breaks_promise(const Measurement& measurement);
 
-// ---- studies ----
-
 /// Chooses the grid of a study.
 struct GridChoice {
   bool quick = false;      // the small grid, for a first look and for tests

@@ -370,8 +370,6 @@ std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& wh
   return out;
 }
 
-// ---- questions ----
-
 std::string questions_text(const SuiteQuestions& questions) {
   std::string out = "farcull-questions 1 " + questions.family + "\n";
   for (const SuiteQuestion& question : questions.questions) {

@@ -1,7 +1,7 @@
 // Stores or asks one fragment, by these defines:
 // FAR_PROXY: the solid's function (in front of this text) computes the depth: the entry when
 // storing, the exit when asking.
-// FAR_ASK: asks instead of storing. Its value is a slack (kAskedBehind): the asked depth is this far
+// FAR_ASK: asks instead of storing. Its value is a slack (kAskedBehind): how far the asked depth is
 // behind the mapped exit.
 // FAR_FLAGS: an asked fragment that is seen writes this pass's serial number to its slot's flag.
 // For proxies this program compares depths, for triangles the depth test does. Without FAR_FLAGS
