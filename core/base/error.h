@@ -11,7 +11,7 @@ namespace farcull {
 class Error : public std::runtime_error {
  public:
   /// line: the line of a text file, counted from 1, or 0 for none. A text may name a parameter as
-  /// "{depth_format}" or a command as "{doctor}". The constructor replaces them by spelled().
+  /// "{depth_format}" and a command as "{doctor}": the program shows them as its users write them.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
