@@ -58,7 +58,7 @@ mesh_scene() {
     scene=$1$copy resolutions=128,1024 methods=far,exact
     if [[ -z $copy ]]; then resolutions=64,128,256,512,1024,2048 methods=far,cullide,exact; fi
     for phase in objects triangles; do
-      # After boxes of triangles only few triangles are drawn. The same pairs may be at risk at higher resolutions.
+      # After boxes of triangles only few triangles are drawn, so two resolutions are enough.
       if [[ $phase == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
       build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
         --broad-phase $phase "${device[@]}" --repeat 1 --json "$out/$scene.$phase.json" || failed+=("$scene")

@@ -52,9 +52,9 @@ struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0
   Vector<Integer> direction;  // a positive multiple of the vector from a's point to b's point
   Integer below;              // > 0; the denominator of `multiples`
-  // The numerators s, t of the point of a, and of the point of b. The point of an edge is start + t
-  // / below * edge; t is stored first. The point of a face is corner 0 + s / below * (corner 1 -
-  // corner 0) + t / below * (corner 2 - corner 0). Not used for a vertex.
+  // Numerators for the point of a, then for that of b. Edge: {t, unused}, and the point is start +
+  // t / below * edge. Face: {s, t}, and the point is corner 0 + s / below * (corner 1 - corner 0) +
+  // t / below * (corner 2 - corner 0). Vertex: not used.
   std::array<std::array<Integer, 2>, 2> multiples;
   bool inside = false;  // neither point lies on the boundary of its feature
 };

@@ -180,8 +180,8 @@ struct ProxyEdges {
       dy[i] = turn * (y[(i + 1) % 4] - y[i]);
     }
   }
-  /// True for the blocks, of kLanes blocks in a row, that may have a covered pixel. cx, cy: the
-  /// lower left pixel centre of the first block. The test enlarges each block by a pixel on each
+  /// Looks at kLanes adjacent blocks. True: the block may have a covered pixel. cx, cy: the lower
+  /// left pixel centre of the first block. The test enlarges each block by a pixel on each
   /// side. Rounding errors are far smaller, so no block with a covered pixel is lost.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();

@@ -188,7 +188,7 @@ struct PoseBenchRow : TimedRow {
 };
 
 struct PoseBenchResult {
-  std::vector<PoseBenchRow> rows;  // new calls, the Collider, then peers
+  std::vector<PoseBenchRow> rows;  // in order: a new call for each frame, the Collider, the peers
   LeftOut left_out;
   std::optional<std::size_t> fastest_peer;  // index into rows
 };

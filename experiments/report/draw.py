@@ -425,7 +425,7 @@ def inline_svg(svg, prefix):
     return re.sub(r'( id="|href="#|url\(#)', lambda m: m.group(1) + prefix, svg[svg.index("<svg"):])
 
 
-# ---- what a figure and its caption are before they are drawn
+# ---- preparing a figure and its caption
 
 LONGEST_NAME = 85  # characters that fit into the key
 SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is logarithmic."

@@ -153,7 +153,8 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle of a, then b
+  // The object and the triangle of a, then those of b.
+  const std::array<std::uint64_t, 4>& key() const { return key_; }
   const std::string& line() const { return line_; }
 
   [[noreturn]] void fail(const std::string& reason) const {

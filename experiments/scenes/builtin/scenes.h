@@ -65,7 +65,7 @@ struct BuiltinScene {
   std::string motion = {};                 // one line; empty if nothing moves
   std::optional<SceneSize> size = {};      // empty: the scene has one size only
   std::optional<SceneSecond> second = {};  // empty: no second number
-  bool costly = false;            // at its usual size too large for every test; for farcull bench
+  bool costly = false;            // its usual size is for farcull bench; no test uses that size
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random

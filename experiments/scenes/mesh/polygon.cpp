@@ -107,11 +107,13 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
 // this axis, or one at least half as large. The normal is rounded. If its largest component m is
 // not certain, exact areas decide.
 //
-// With n corners, a product of two differences has three roundings and is in at most 2 n sums. So
-// each of the 2 n products errs by less than (4 n + 8) kUnit of its computed value. If it
-// underflows, it errs by kTiny / 2 more. Let e be the error of m, and f the error of another
-// component. `bound` is at least 2 e + f. So if m exceeds `bound`, its sign is right. The other
-// component is then at most m + f, which is less than 2 (m - e).
+// With n corners there are 2 n products of two differences. A product is rounded three times, and
+// then takes part in at most 2 n additions. So it errs by less than (4 n + 8) kUnit of its computed
+// value, and by kTiny / 2 more if it underflows.
+//
+// Let e be the error of m, and f the error of another component. `bound` is at least 2 e + f. So if
+// m exceeds `bound`, its sign is right: the true value on this axis is at least m - e. The true
+// value of the other component is at most m + f, which is less than 2 (m - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
