@@ -1,7 +1,7 @@
 // The accounting of distances: its bounds against rational numbers, and wrong answers that it has
 // to find.
-#include "tests/lab/drawn_pairs.h"
 #include "verify/distance_accounting.h"
+#include "tests/lab/drawn_pairs.h"
 
 #include "tests/lab/distances.h"
 #include "tests/lab/hard_pairs.h"

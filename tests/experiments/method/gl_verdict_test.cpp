@@ -139,8 +139,7 @@ TEST(GlKernelProbe, KernelsWithoutWideningAreRejected) {
 
 // Solids that are not seen, since what is stored is another one.
 TEST(GlKernelProbe, LateStoresAreRejected) {
-  EXPECT_EQ(failures({.late_stores = true}),
-            (Names{"oriented boxes", "exact offsets"}));
+  EXPECT_EQ(failures({.late_stores = true}), (Names{"oriented boxes", "exact offsets"}));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The integer pair agrees with rational arithmetic, direction by direction.
-#include "tests/lab/drawn_pairs.h"
 #include "verify/certificate/integer_pair.h"
+#include "tests/lab/drawn_pairs.h"
 
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
