@@ -84,8 +84,6 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
   return out;
 }
 
-// ---- the scene cache, and the comparison of answers with the truth ----
-
 std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs) {
   std::vector<std::uint32_t> out;
   out.reserve(2 * pairs.size());

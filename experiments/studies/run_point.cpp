@@ -29,8 +29,6 @@
 namespace farcull {
 namespace {
 
-// ---- the scenes ----
-
 using shapes::Corners;
 
 // A scene of two objects, made of segments. Each segment crosses a segment of the other object
@@ -176,8 +174,6 @@ Scene cloth_apart(const ClothApart& wanted) {
   for (Object& object : scene.objects) object.self = false;
   return scene;
 }
-
-// ---- runs ----
 
 AnswerCounts answer_counts(const Scene& scene, const TruePairs& truth, const Errors& errors,
                            std::uint64_t candidates) {

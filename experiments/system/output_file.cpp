@@ -3,7 +3,6 @@
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -32,16 +32,20 @@ long items_done = 0, items_wanted = 0, files_written = 0;
 const char *items = "", *how_it_ends = "";
 bool on_terminal = false;
 
+// Allocates nothing, since destructors call it.
 void make_message() {
-  const std::string how_far =
-      items_wanted > 0
-          ? fmt::format(": after {} of {} {}; {}", items_done, items_wanted, items, how_it_ends)
-      : files_written > 0 ? fmt::format("; files that are written: {}", files_written)
-                          : "; no file was written";
   std::array<char, 512>& buffer = buffers[message == buffers[0].data() ? 1 : 0];
-  *fmt::format_to_n(buffer.data(), buffer.size() - 1, "{}farcull: interrupted{}\n",
-                    on_terminal ? "\r\033[K" : "", how_far)
-       .out = '\0';
+  const char* const start = on_terminal ? "\r\033[K" : "";
+  if (items_wanted > 0) {
+    std::snprintf(buffer.data(), buffer.size(), "%sfarcull: interrupted: after %ld of %ld %s; %s\n",
+                  start, items_done, items_wanted, items, how_it_ends);
+  } else if (files_written > 0) {
+    std::snprintf(buffer.data(), buffer.size(),
+                  "%sfarcull: interrupted; files that are written: %ld\n", start, files_written);
+  } else {
+    std::snprintf(buffer.data(), buffer.size(), "%sfarcull: interrupted; no file was written\n",
+                  start);
+  }
   message = buffer.data();
 }
 

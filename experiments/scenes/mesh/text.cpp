@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -374,13 +375,21 @@ std::string gzip(std::string_view bytes) {
                    Z_DEFAULT_STRATEGY) != Z_OK) {
     throw std::bad_alloc();
   }
-  std::string out(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int code = deflate(&stream, Z_FINISH);
-  out.resize(out.size() - stream.avail_out);
+  std::string out;
+  std::array<char, 1 << 14> piece;
+  int code = Z_OK;
+  while (code == Z_OK) {
+    if (stream.avail_in == 0 && !bytes.empty()) {  // zlib counts the bytes in 32 bits
+      const std::size_t length = std::min<std::size_t>(bytes.size(), 1u << 30);
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+      stream.avail_in = static_cast<uInt>(length);
+      bytes.remove_prefix(length);
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = piece.size();
+    code = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+    out.append(piece.data(), piece.size() - stream.avail_out);
+  }
   deflateEnd(&stream);
   if (code != Z_STREAM_END) throw std::logic_error("gzip: zlib does not end");
   return out;
