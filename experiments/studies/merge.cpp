@@ -22,7 +22,10 @@ constexpr long kMostShards = 100'000;
 constexpr const char* kMeasureAgain = "measure it again as the others were";
 
 // Returns the row's library with its version, or "" if the row names no library.
-std::string library_of(const Row& row) { return row.measurement.counts.value("library", ""); }
+std::string library_of(const Row& row) {
+  const auto at = row.measurement.counts.find("library");
+  return at != row.measurement.counts.end() && at->is_string() ? at->get<std::string>() : "";
+}
 
 struct Source {
   std::string path;
