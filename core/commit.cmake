@@ -1,6 +1,6 @@
-# Writes OUT with the commit of SOURCE, only if it changed. If tracked files differ from the commit, "-dirty-" and a hash of
-# the difference follow, so that two such trees have different names. Pages of results do not count: a store of results goes on
-# after its page was written.
+# Writes the commit of SOURCE to OUT, unless OUT has it already. If tracked files differ from the commit, "-dirty-" and a hash of
+# the difference follow, so that different trees have different names. Differences in docs/results are ignored: writing a page of
+# results must not change the commit of later results.
 execute_process(COMMAND git -C ${SOURCE} describe --always --abbrev=12 --exclude=*
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(commit)
@@ -16,7 +16,7 @@ else()
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${commit}\"\n")
 
-# Writes PROBED as well: a hash of all sources that a verdict about a device depends on: kernels, probes, and what runs them.
+# Also writes PROBED: a hash of the sources of kernels, probes and the code that runs them. A verdict on a device depends on them.
 if(PROBED)
   file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/*/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/base/random.h
        ${SOURCE}/core/base/floating_point.* ${SOURCE}/core/view/budget.* ${SOURCE}/core/view/view.*

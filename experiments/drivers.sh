@@ -105,7 +105,7 @@ measure() {
   status=0
   under "$1" timeout 3600 "$program" experiment radius --quick --resume --device software --out "$folder/results" \
     >"$folder/study.txt" 2>"$folder/study.said" || status=$?
-  # Status 2 means that some points of the study have no answer. The other points are used.
+  # Status 2 means that some points of the study have no result. The other points are used.
   if ((status > 2)); then
     echo "drivers: $1: the study ended with status $status; $folder/study.said says why" >&2
     return 2
@@ -149,8 +149,9 @@ broken_table() {
       FROM json_each(readfile('$out/$driver/doctor.json'), '\$.probes') p WHERE NOT p.value ->> 'pass'"
   done
 }
-# For each of the two radii: how many colliding pairs FAR missed, and at how many points the lemmas are broken.
-# Rows of the native canvas and of device models are left out, since they are the same for all drivers.
+# For each of the two radii, the table has the colliding pairs that FAR missed, and the points that break the
+# lemmas. Rows of the native canvas and of device models are left out, since they are the same for all
+# drivers.
 drawn="device NOT IN ('cpu', 'native')"
 missed_table() {
   local driver store

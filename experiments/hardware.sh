@@ -57,7 +57,7 @@ export FARCULL_BUILT=yes DEVICE=$device XDG_CACHE_HOME=$out/cache
 
 began=$SECONDS
 cores=$(nproc)
-# FARCULL_HARDWARE_DISK is for the test.
+# Only a test sets FARCULL_HARDWARE_DISK.
 most_disk=${FARCULL_HARDWARE_DISK:-20971520} # KiB
 child=''
 missing=() # parts without a result, with the reason
@@ -68,8 +68,9 @@ say() { printf 'hardware: %s\n' "$*"; }
 
 left() { echo $((budget - (SECONDS - began))); } # seconds
 
-# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call did. It may take 1/SHARE of the time
-# that is left, but at least 10 minutes. steps/NAME gets the status and the seconds, logs/NAME.txt the output.
+# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call ran it. The command may take
+# 1/SHARE of the time that is left, but at least 10 minutes. steps/NAME gets the status and the seconds;
+# logs/NAME.txt the output.
 step() {
   local name=$1 text=$3 used
   local -i share=$2 limit start status=0
@@ -89,8 +90,8 @@ step() {
   fi
   say "$text (part $name, at most $limit s)"
   start=$SECONDS
-  # The command runs in the background, since a signal interrupts `wait`, but no command in the foreground.
-  # Such a command ignores Ctrl-C unless `env` restores it; timeout passes on the signals that it gets.
+  # The command runs in the background, since bash handles signals during `wait`, but not during a foreground
+  # command. A background command ignores Ctrl-C unless `env` restores it. timeout passes on its signals.
   env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
   child=$!
   wait "$child" || status=$?
@@ -123,7 +124,7 @@ moving_scenes() {
   build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }'
 }
 safe() { tr -c 'a-zA-Z0-9\n' '-' <<<"$1"; } # a name for files
-bench() { # SHARE SCENE [OPTIONS]: all peers, on all cores and on one
+bench() { # SHARE SCENE [OPTIONS]: times all peers, on all cores and on one core
   local share=$1 name threads
   name=$(safe "${*:2}")
   for threads in "$cores" 1; do
@@ -160,7 +161,7 @@ for scene in armadillo-elephant needles-layers needles-crossed "mannequin-devil 
 done
 devices=$device
 if [[ $device != native ]]; then devices=$device,native; fi
-# --resume: what an earlier call measured stays.
+# --resume keeps what an earlier call measured.
 step studies 1 "all studies" build/farcull experiment all --devices "$devices" --resume --out "$out/results"
 
 # ---- the report, the page, the archive ----
@@ -225,7 +226,7 @@ section() {
   section 'The test suite' suite
   if [[ -e $out/results/report/results.md ]]; then
     printf '\n'
-    # Headings one level lower, and no figures, which are in the archive.
+    # Lowers headings by one level. Removes figures, which are in the archive.
     sed '1s/^# .*/## The studies/; 2,$s/^#/##/; /^!\[/d' "$out/results/report/results.md"
   fi
 } >"$out/$name.md"
@@ -234,7 +235,7 @@ if [[ $device == hardware ]]; then
   cp "$out/$name.md" docs/results/
   say "made docs/results/$name.md"
 fi
-# The archive appears as a whole.
+# The archive gets its name when it is complete.
 tar -czf "$out.tar.gz.part" -C "$(dirname "$out")" --exclude=lock --exclude=mesa_shader_cache \
   "$(basename "$out")"
 mv "$out.tar.gz.part" "$out.tar.gz"

@@ -62,7 +62,7 @@ local function Link(element)
   return element.content
 end
 
--- Code may break at dots, slashes and where a word in it begins, so that lines keep to the margin.
+-- Code may break at dots, at slashes and before words inside a name, so that lines keep to the margin.
 local function Code(element)
   local text = element.text:gsub("[\\{}_%%&#$^~]", function(c)
     if c == "\\" then return "\\textbackslash{}" end
@@ -74,8 +74,7 @@ local function Code(element)
   return pandoc.RawInline("latex", "{\\small\\texttt{" .. text .. "}}")
 end
 
--- Columns are as wide as their longest cell needs, up to 60 letters, where the table is wider than the
--- page.
+-- In a table wider than the page, the widths of columns are proportional to their longest cells. Only 9 to 60 letters count.
 local function Table(element)
   local longest = {}
   local function see(rows)
@@ -99,7 +98,7 @@ local function Table(element)
   return element
 end
 
--- The first heading of either page is the title of the paper or of its second part.
+-- The first heading of each page is the title of the paper, or of its second part.
 local seen = 0
 local function Header(element)
   if element.level > 1 then
@@ -114,5 +113,5 @@ local function Header(element)
   return element
 end
 
--- Tables first, since they measure the plain text.
+-- Table runs first, since it measures the plain text of cells.
 return { { Table = Table }, { Str = Str, Link = Link, Code = Code, Header = Header } }

@@ -27,8 +27,8 @@ REACHING = np.array([[0.05, 0.03], [-2.6, -0.5], [-1.2, -1.9]])  # a triangle; i
 
 
 def rectangle(points, radius):
-    """The corners of the rectangle around the points, `radius` away on each side, along the line of the two points that are
-    farthest apart."""
+    """Returns the corners of the rectangle around the points, with a margin of `radius`. Its sides are parallel or perpendicular
+    to the line through the two points that are farthest apart."""
     along = max((q - p for p in points for q in points), key=lambda d: d @ d)
     axes = np.array([along, [-along[1], along[0]]]) / np.hypot(*along)
     low, high = (points @ axes.T).min(0) - radius, (points @ axes.T).max(0) + radius
@@ -36,7 +36,7 @@ def rectangle(points, radius):
 
 
 def deepest(corners, point):
-    """Returns the distance of a point from the nearest side's line of a convex polygon; negative outside."""
+    """Returns the least distance of a point from the lines through the sides of a convex polygon; negative outside."""
     side = np.roll(corners, -1, 0) - corners
     turn = np.sign(side[0, 0] * side[1, 1] - side[0, 1] * side[1, 0])
     away = point - corners
@@ -189,7 +189,7 @@ def entry_exit():
     return figure
 
 
-# Three objects seen along y: x and depth of one end, x and depth of the other. Two pairs cross.
+# Three objects of four segments, seen along y. A segment has x and depth of one end, then of the other end. Two pairs cross.
 SCENE = np.array([[(1, 4, 7, 5), (10, 9, 16, 4), (19, 4, 25, 5), (28, 4, 35, 3)],
                   [(1, 8, 7, 9), (10, 4, 16, 9), (19, 12, 25, 8), (28, 15, 35, 16)],
                   [(1, 13, 7, 12), (10, 13, 16, 12), (19, 8, 25, 12), (28, 9, 35, 8)]], float)
@@ -227,7 +227,7 @@ def run_passes():
             for o in order:
                 live = [t for t in range(4) if bits[o, t] != BOTH]
                 for t in live:
-                    if not (drawn[o][t][:, 1] >= nearest).any():  # in no column behind what is stored
+                    if not (drawn[o][t][:, 1] >= nearest).any():  # in no column behind the stored depth
                         bits[o, t] |= bit
                 for t in (t for t in live if bits[o, t] != BOTH):
                     nearest = np.fmin(nearest, drawn[o][t][:, 0])
@@ -257,7 +257,7 @@ def published(case):
     corners = np.array([line.split()[1:3] for line in Path(case).read_text().splitlines() if line.startswith("v ")], float)
     if len(corners) != 6:
         raise SystemExit(f"paper_figures: {case} is not the case of two triangles")
-    snapped = lambda points: np.rint(points * 256) / 256  # to the grid of a device with 8 subpixel bits
+    snapped = lambda points: np.rint(points * 256) / 256  # snapped as on a device with 8 subpixel bits
     pair = [(name, colour, points, snapped(rectangle(points, PUBLISHED)))
             for name, colour, points in zip(("rising", "falling"), (BLUE, RED), (corners[:3], corners[3:]))]
     reach = 0.012

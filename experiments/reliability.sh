@@ -22,7 +22,7 @@ case ${1-} in boxes | motion | distances)
   shift
   ;;
 esac
-# Scenes of boxes with their options.
+# The scenes of the form `boxes`, with their options.
 boxes_runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"
@@ -51,7 +51,7 @@ failed=()
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 device=(${DEVICE:+--device "$DEVICE"})
 
-# mesh_scene SCENE: FAR on a scene and its copies.
+# mesh_scene SCENE: compares FAR with exact on a scene and its copies.
 mesh_scene() {
   local scene copy resolutions methods phase
   for copy in "" @far @tiny @huge @ground; do

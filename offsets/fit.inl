@@ -38,7 +38,7 @@ FAR_KERNEL double fit_above(double z, double radius) {
   return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
-// Sets depths[0] to a float before every point of the fattened primitive, and depths[1] to a float behind every point.
+// Sets depths[0] to a float <= z and depths[1] to a float >= z, for the z of every point of the fattened primitive.
 FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* depths) {
   double lowest = p[0].z;
   double highest = p[0].z;
@@ -52,10 +52,10 @@ FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* dep
 
 // ---- the proxy's rectangle ----
 
-// Fits a rectangle inside |x| <= bound_x, |y| <= bound_y to the image of the points fattened by a disc. Its four
-// corners x, y are counterclockwise. It lies along the longest image of an edge if it then fits; this is tight for
-// slivers. Otherwise it is aligned with the axes and cut off at the bounds. Corners are rounded to the nearest float;
-// the error budget has a term "input" for this.
+// Fits a rectangle inside |x| <= bound_x, |y| <= bound_y to the image of the points fattened by a disc. The rectangle lies
+// along the longest image of an edge if it then fits, which is tight for slivers. Otherwise it is aligned with the axes and
+// cut off at the bounds. `corners`: x, y of four corners, counterclockwise, rounded to the nearest float. The error budget
+// has a term "input" for this rounding.
 FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double bound_x, double bound_y, double* corners) {
   double ux = 1.0;
   double uy = 0.0;
@@ -136,13 +136,13 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   for (int i = 0; i < count; ++i) {
     const dvec3 d = fit_sub(p[i], base);
     dvec3 off = fit_sub(d, fit_scaled(fit_dot(along, d), along));
-    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // removes what rounding left
+    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // removes the rest along `along`
     const double distance2 = fit_dot(off, off);
     const FAR_BOOL farther = distance2 > farthest2;
     across = fit_choose(farther, off, across);
     farthest2 = FAR_SELECT(farther, distance2, farthest2);
   }
-  // A needle or a point allows any direction across. The axis with the smallest component of `along` gives one.
+  // For a needle or a point, any direction across is sound. The axis with the smallest component of `along` gives one.
   const FAR_BOOL thin = farthest2 <= max(0x1p-80 * longest2, 1e-200);
   const double ax = abs(along.x);
   const double ay = abs(along.y);
@@ -189,8 +189,8 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
       reach = max(reach, abs(fit_dot(n, d)));
       size = max(size, (abs(n.x) * abs(d.x) + abs(n.y) * abs(d.y)) + abs(n.z) * abs(d.z));
     }
-    // A difference, a product and two sums give `reach` an error under 5 * 2^-53 of `size`. |n| <= (1 + |n|^2) / 2,
-    // which needs no root. kFitBox is larger than the relative rounding errors of `reach` and of `length`.
+    // A difference, a product and two sums give `reach` an error under 5 * 2^-53 of `size`. |n| is at most (1 + |n|^2) / 2.
+    // kFitBox is larger than the relative rounding errors of `reach` and of `length`.
     const double length = (0.5 + 0.5 * fit_dot(n, n)) * (1.0 + kFitBox);
     solid[4 * i + 4] = n.x;
     solid[4 * i + 5] = n.y;
@@ -231,8 +231,7 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
     solid[4 * i + 6] = v.z;
     solid[4 * i + 7] = 0.0;
   }
-  // The second term covers the rounding of the subtraction, 2^-53 of |d| per axis. The third term covers components
-  // below
+  // The second term covers the rounding of the subtraction, 2^-53 of |d| per axis. The third term covers components below
   // 2^-511, whose squares are less than a normal double.
   const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
   solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));

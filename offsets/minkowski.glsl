@@ -5,11 +5,11 @@
 //   s0 = (m, zlo), s1 = (v0 - m, r), s2 = (v1 - m, zhi), s3 = (v2 - m, -); r <= 2^20
 // Its surface is three spheres, three cylinders along the edges and the two shifted triangles. The line's first and last
 // contact with each part is found in plain float arithmetic, and only serves to choose a normal. Any normal n bounds the
-// solid by the halfspace n . p <= max n . v_i + r |n|, so the bound that is returned does not depend on how well the contact
-// was computed; where it was computed well, the halfspace touches the solid there (docs/budget.md, "The exact offset"). But
-// it must be one n: the same bits in its extent, in its length and in the halfspace. In GLSL a variable that is not
-// `precise` may be computed anew, and otherwise, at each use; so every variable that holds a normal is precise, and so are
-// the parameters through which a function gives one back (docs/budget.md, "One normal").
+// solid by the halfspace n . p <= max n . v_i + r |n|, so an inaccurate contact cannot make the returned bound wrong. If
+// the contact is accurate, the halfspace touches the solid there (docs/budget.md, "The exact offset"). The extent, the
+// length and the halfspace must use the same bits of n. In GLSL, a variable that is not `precise` may be recomputed with
+// other roundings at each use. So every variable that holds a normal is precise, and so are the parameters through which a
+// function returns a normal (docs/budget.md, "One normal").
 
 // An upper bound of the solid's extent along n, from the origin m.
 FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
@@ -21,11 +21,11 @@ FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   FAR_PRECISE float q2 = n.x * v2.x + n.y * v2.y + n.z * v2.z;
   FAR_PRECISE float e = max(max(a0, a1), a2) * kEightU + kTiny;
   FAR_PRECISE float squared = n.x * n.x + n.y * n.y + n.z * n.z;
-  // |n| <= (1 + |n|^2) / 2: no root, and exact to second order for unit normals.
+  // The bound |n| <= (1 + |n|^2) / 2 needs no root. It exceeds |n| by (|n| - 1)^2 / 2.
   FAR_PRECISE float length = (0.5f + 0.5f * squared) * kUp * kUp;
   FAR_PRECISE float ball = v0.w * length * kUp;
   FAR_PRECISE float sum = max(max(q0, q1), q2) + e + ball;
-  FAR_PRECISE float extent = sum + abs(sum) * kEightU;  // not in the return statement, where nothing is precise
+  FAR_PRECISE float extent = sum + abs(sum) * kEightU;  // a variable, because a return value is not precise
   return extent;
 }
 
@@ -43,8 +43,8 @@ FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v
   return !usable || hit;
 }
 
-// Finds the line's first contact (sign -1) or last contact (sign 1) with the capsule about the edge a, b. If it is
-// farther out than the contact in n, its normal replaces n, and its z replaces n.w.
+// Finds the line's first contact (sign -1) or last contact (sign 1) with the capsule about the edge a, b. If this contact
+// is farther out than the contact in n, its normal replaces n, and its z replaces n.w.
 FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -76,8 +76,8 @@ FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECIS
   n.w = FAR_SELECT(beyond, z, n.w);
 }
 
-// If the squared distance of edge a, b from the pixel centre in the image is less than n.w, it replaces n.w, and the
-// direction from the edge to the pixel centre replaces n.
+// If the squared distance of edge a, b from the pixel centre in the image is less than n.w, this distance replaces n.w, and
+// the direction from the edge to the pixel centre replaces n.
 FAR_KERNEL void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;

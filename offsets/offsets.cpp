@@ -172,9 +172,9 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// At each end takes the narrower of two bounds: with this machine's floats, and with the number
-// type Worst. GLSL permits the rounding of both. With Worst alone, other normals may be chosen, and
-// the interval may be wider.
+// Computes the interval with this machine's floats and with the number type Worst, and takes the
+// narrower bound at each end. GLSL permits both roundings. Worst alone may choose other normals and
+// give a wider interval.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

@@ -21,7 +21,8 @@ Fattener obb_surface_fattener();
 
 // The exact offset: the Minkowski sum of a triangle and a ball. Its surface is made of three
 // cylinders along the edges, three spheres and two shifted triangles (Govindaraju, Lin, Manocha
-// 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates it in each pixel.
+// 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates the offset in each
+// pixel.
 
 /// A primitive that clipping left with more than three corners is drawn as a fan of triangles. Each
 /// triangle is fattened. The union of these solids contains the fattened polygon.
@@ -29,11 +30,11 @@ Fattener minkowski_fattener();
 
 // Functions that fit rectangles and solids to primitives in double (offsets/fit.inl).
 
-/// Returns the corners of a rectangle inside `bounds`. It contains the image of `points`, fattened
-/// by a disc of `radius` px. It lies along the longest edge if it then fits into `bounds`.
-/// Otherwise it is aligned with the axes and cut off at `bounds`, at least a pixel outside the
-/// window. The error budget has a term "input" for the rounding of the corners to the nearest
-/// floats.
+/// Returns the corners of a rectangle inside `bounds`. The rectangle contains the image of
+/// `points`, fattened by a disc of `radius` px. It lies along the longest edge if it then fits into
+/// `bounds`. Otherwise it is aligned with the axes and cut off at `bounds`, at least a pixel
+/// outside the window. The error budget has a term "input" for the rounding of the corners to the
+/// nearest floats.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
                                      const ProxyBounds& bounds);
 

@@ -47,7 +47,7 @@ FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT
 }
 
 // Cuts the interval [lo, hi] of the line with a halfspace n . (x - m.x, y - m.y, z - m.z) <= h. Returns false if the line
-// misses it.
+// misses the halfspace.
 FAR_KERNEL FAR_BOOL far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = n.x * d.x;
   FAR_PRECISE float sy = n.y * d.y;

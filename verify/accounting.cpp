@@ -1,12 +1,12 @@
 // Joins a tree of boxes with itself, to find the pairs of triangles whose boxes overlap. The upper
 // levels of the tree divide the set of objects. The lower levels divide the triangles of one
-// object. So two disjoint subtrees hold either different objects, or triangles of one object;
-// subtrees of one object are joined iff the object is `self`. If the boxes of two nodes are far
-// enough apart, all pairs of the two nodes are counted at once. How the tree divides changes the
-// speed, never the answer.
+// object. So two disjoint subtrees hold either different objects, or triangles of one object.
+// Subtrees of one object are joined iff the object is `self`. If the boxes of two nodes are far
+// enough apart, all pairs of the two nodes are counted at once. The division affects the speed, not
+// the answer.
 //
-// A box has the minima and maxima of the coordinates. A gap between boxes is a difference in
-// double. Rounding is monotone: if the rounded gap exceeds the clearance, the exact gap does.
+// A box has the minima and maxima of the coordinates. A gap between boxes is a difference computed
+// in double. Rounding is monotone: if the rounded gap exceeds the clearance, so does the exact gap.
 //
 // The classes of Accounting add up only if the join lost no pair. But they would add up, too, if
 // the join lost one pair and counted another twice. So the certificate's BoxPairs enumerates the
@@ -47,8 +47,7 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
 
 namespace {
 
-// At most this many triangles are in a leaf. Larger leaves need fewer nodes, but more tests of
-// single boxes.
+// At most this many triangles are in a leaf.
 constexpr std::uint32_t kLeafSize = 4;
 // At most this many pairs are decided at a time, so that the list of all overlaps is never stored.
 constexpr std::size_t kChunk = 1 << 18;
@@ -94,7 +93,7 @@ struct Node {
   std::uint32_t count = 0;
   std::uint32_t left = kNone;  // kNone in a leaf
   std::uint32_t right = kNone;
-  bool within = false;  // two triangles of this node may make a pair that counts
+  bool within = false;  // true if two triangles of this node may be a pair that counts
 };
 
 /// Moves the half of the items with the smaller centres to the front, along the axis on which the
@@ -136,7 +135,7 @@ class Tree {
   }
 
   /// Calls visit(a, b), a and b in any order, for each pair that counts and whose bounds meet.
-  /// Returns the number of the other pairs that count.
+  /// Returns the number of pairs that count and whose bounds do not meet.
   std::uint64_t join(auto& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
   }
@@ -284,7 +283,8 @@ class Kept {
 };
 
 /// Returns the number of pairs that count: n m for any two objects of n and m triangles, and
-/// n (n - 1) / 2 for each object that is `self`. It is below 2^63 for 32-bit n.
+/// n (n - 1) / 2 for each object that is `self`. The number is below 2^63, since n and m have 32
+/// bits.
 std::uint64_t pairs_that_count(const Scene& scene) {
   std::uint64_t before = 0;
   std::uint64_t pairs = 0;

@@ -1,9 +1,9 @@
 // Independent accounting: each pair of triangles that counts is either kept, or proved apart, or
 // missed. A pair counts if its triangles are of different objects, or of one object marked `self`.
 //
-// The accounting shares no code with the culling. It makes its own boxes, and finds the pairs with
-// overlapping boxes by its own algorithm, not by CGAL's join or core's join. It decides the pairs
-// that were not kept with verify/exact. It knows nothing of offsets, views or budgets.
+// The accounting shares no code with the culling. It computes boxes itself, and finds the pairs
+// with overlapping boxes by an algorithm of its own, not by CGAL's join or core's join. It decides
+// the pairs that were not kept with verify/exact. It does not use offsets, views or budgets.
 #pragma once
 
 #include <cstddef>
@@ -33,9 +33,9 @@ struct PairSet {
 /// clearance along each axis.
 PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance);
 
-/// Numbers of unordered pairs that count. Each pair is in exactly one class: the first of these
-/// fields after pairs_total that fits. verify/exact.h defines neighbours, their shared part and the
-/// clearance D.
+/// Numbers of unordered pairs that count. Each pair is counted in exactly one field after
+/// pairs_total: the first field that fits the pair. verify/exact.h defines neighbours, their shared
+/// part and the clearance D.
 struct Accounting {
   std::uint64_t pairs_total = 0;         // computed from the sizes of the objects
   std::uint64_t ignored = 0;             // pairs of objects in AccountOptions::ignored
@@ -70,7 +70,7 @@ struct AccountingSteps {
 /// Counts the pairs of each class. kept: the pairs that culling left to the exact tests, sorted,
 /// each once, a < b; they count and are not ignored. Memory O(triangles + kept). Throws
 /// std::logic_error in these cases:
-/// - `kept` is not as above: the counts would be wrong without notice.
+/// - `kept` is not as described above, so that the counts would be wrong.
 /// - validate() would not accept the ranges of the scene.
 /// - The clearance is negative or not finite.
 /// - A pair is left undecided, or the classes do not sum to pairs_total.

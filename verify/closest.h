@@ -16,11 +16,12 @@
 
 namespace farcull {
 
-/// The exact square of a distance, a rational number >= 0. It is constant, and copies share it.
+/// The exact square of a distance, a rational number >= 0. The value is constant, and copies share
+/// it.
 class SquaredDistance {
  public:
   SquaredDistance();  // the square is 0
-  struct Value;       // defined in verify/squared_distance.h, for verify alone
+  struct Value;       // defined in verify/squared_distance.h; only verify uses it
   explicit SquaredDistance(std::shared_ptr<const Value> value);
   /// Returns the square of this distance. Precondition: the distance is finite and >= 0.
   static SquaredDistance of(double distance);
@@ -39,8 +40,8 @@ class SquaredDistance {
   std::shared_ptr<const Value> value_;
 };
 
-/// The part of a triangle that a point lies on. If a point lies on several parts, it has the first
-/// of them in this order: corner 0, 1, 2, edge 0, 1, 2, face.
+/// The part of a triangle that a point lies on. If a point lies on several parts, its feature is
+/// the first of these parts in the order corner 0, 1, 2, edge 0, 1, 2, face.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
   FeatureKind kind = FeatureKind::vertex;
@@ -56,10 +57,9 @@ constexpr std::uint8_t number_of(const Feature& feature) {
 }
 
 /// Two closest points of two triangles. Several pairs of points may be equally near (parallel
-/// edges, triangles that overlap). Then features choose one pair (docs/proximity.md, "Two nearest
-/// points"). A feature includes its boundary here. The point of a is on the least feature of a that
-/// has a closest point. The point of b is on the least feature of b that has a partner for the
-/// point of a.
+/// edges, triangles that overlap). The points here are on the first features F of a and G of b,
+/// ordered by F and then by G, that hold two closest points (docs/proximity.md, "Two nearest
+/// points"). A feature includes its boundary here.
 struct Closest {
   SquaredDistance squared;
   double distance = 0;              // squared.root()
@@ -69,8 +69,8 @@ struct Closest {
 
 /// Returns closest points of the closed triangles. If the triangles share a point, the distance is
 /// 0 and both points are one common point. The answer depends only on the corners and their order.
-/// Exchanging a and b does not change the distance. It changes the points only if others are as
-/// near.
+/// Exchanging a and b does not change the distance. It changes the points only if other points are
+/// equally near.
 Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// Returns only the square of the distance.
@@ -85,24 +85,24 @@ struct NearestPair {
 /// std::logic_error if a pair names a triangle that the scene does not have.
 std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
 
-// ---- two parallel planes between two triangles, exactly. They show of many other pairs of
-// triangles at once that none of these pairs is nearer.
+// ---- two parallel planes between two triangles, exactly. They show for many other pairs of
+// triangles that these pairs are no nearer.
 
 /// Let p and q be closest points of the triangles a and b, and w = q - p. Both planes are
 /// perpendicular to w. The first plane goes through p, the second plane through q. reach(s) is how
 /// far a triangle s extends beyond the first plane in the direction of w. start(t) is how far
-/// behind the second plane a triangle t begins. Both lengths have the same unit, and are negative
-/// on the other side of the plane. If reach(s) <= start(t), then w.(y - x) >= w.w for all points x
-/// of s and y of t. So |y - x| >= |w|: s and t are no nearer than a and b. If reach(s) < start(t),
-/// they are farther apart.
+/// behind the second plane a triangle t begins. Both lengths have the same unit. A length is
+/// negative on the other side of its plane. If reach(s) <= start(t), then w.(y - x) >= w.w for all
+/// points x of s and y of t. So |y - x| >= |w|: s and t are no nearer than a and b. If reach(s) <
+/// start(t), they are farther apart.
 class PlanesBetween {
  public:
   /// Throws std::logic_error if the triangles meet.
   PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-  /// Returns at least the exact reach; the exact reach itself if it is a double, such as 0.
+  /// Returns an upper bound of the reach; the exact reach if it is a double, such as 0.
   double reach(const std::array<Vec3, 3>& t) const { return place(t, 0); }
-  /// Returns at most the exact start; the exact start itself if it is a double.
+  /// Returns a lower bound of the start; the exact start if it is a double.
   double start(const std::array<Vec3, 3>& t) const { return place(t, 1); }
 
  private:

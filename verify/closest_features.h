@@ -2,8 +2,9 @@
 // difference is perpendicular to both features. All numbers are integers, so nothing is rounded.
 // verify/closest_points.cpp uses this for triangles. Other sources of verify use only the vectors.
 //
-// The corners are integers of one scale. A point of a feature is a corner plus multiples of the
-// edges from that corner. The multiples are fractions with the denominator Found::below.
+// Corners have integer coordinates, all scaled alike. A point of a feature is a corner plus
+// multiples of the edges from that corner. The multiples are fractions with the denominator
+// Found::below.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -60,8 +61,8 @@ struct Found {
 };
 
 // Each of these functions looks for two points as described at Found. It returns true if the closed
-// features have exactly one such pair of points, which it writes to `f`. If it returns false, `f`
-// has no meaning.
+// features have exactly one such pair of points, which it writes to `f`. If it returns false,
+// ignore `f`.
 
 template <class Integer>
 bool vertex_vertex(const Vector<Integer>& p, const Vector<Integer>& q, Found<Integer>& f) {
@@ -117,8 +118,8 @@ bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Inte
   return true;
 }
 
-/// Looks for the points of the edge p to p_end and the edge q to q_end. Parallel edges have no
-/// single pair.
+/// Looks for the points of the edge p to p_end and the edge q to q_end. Returns false for parallel
+/// edges, which have no single closest pair.
 template <class Integer>
 bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vector<Integer>& q,
                const Vector<Integer>& q_end, Found<Integer>& f) {
@@ -174,7 +175,8 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   return true;
 }
 
-/// Looks for the points of a feature of a and a feature of b. Two faces never have a single pair.
+/// Looks for the points of a feature of a and a feature of b. Two faces never have a single closest
+/// pair.
 template <class Integer>
 bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>& b,
           const Feature& of_b, Found<Integer>& f) {
@@ -231,7 +233,7 @@ inline Feature on_edge(int i, double s) {
 inline double in_unit(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
 /// Updates the guess with edge i of a (from a[i] along u) and edge j of b (from b[j] along v). For
-/// nearly parallel edges an end is used, which is closest or nearly so.
+/// nearly parallel edges, an end of an edge is used: it is closest, or nearly closest.
 inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
                         const std::array<Vec3, 3>& b, const Vec3& v, int j, Guess& guess) {
   const Vec3 w = a[i] - b[j];

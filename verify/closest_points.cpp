@@ -14,27 +14,27 @@
 
 namespace farcull {
 
-// Doubles guess the features, and integers prove the guess. If it is wrong, all features are tried.
+// Doubles guess the features, and integers prove the guess. If it fails, all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
-// power of two that makes them integers. All that follows adds, subtracts and multiplies integers.
+// power of two that makes them integers. All later steps add, subtract and multiply integers.
 //
 // Which answer: the first pair of features, F of a and G of b ordered by F and then by G, that
 // holds two closest points. docs/proximity.md ("Two nearest points") proves that F and G hold only
 // one such pair, and that find() constructs it. For other features find() gives points of these
-// features or nothing, so never nearer points. So the answer is the first of the nearest points
-// that find() gives for all pairs of features in order.
+// features or nothing, so never nearer points. So find() is called for all pairs of features in
+// order, and the answer is the first result with the least distance.
 //
-// Proof of a guess. By the theorem there, p and q with w = q - p are closest points iff w.(x - p)
-// <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. All closest points of a
-// lie in the hull of the corners x with product 0. All closest points of b lie in the hull of the
-// corners y with product 0. So a guess is the answer under three conditions: these corners are just
-// the corners of F and of G; p and q are inside F and G; F or G is a corner, or both are edges that
-// are not parallel. Otherwise the features of these corners are tried in order, until two of them
-// are as near.
+// Proof of a guess. By the theorem in docs/proximity.md, p and q with w = q - p are closest points
+// iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. All closest
+// points of a lie in the hull of the corners x with product 0. All closest points of b lie in the
+// hull of the corners y with product 0. So a guess is the answer under three conditions: these
+// corners are just the corners of F and of G; p and q are inside F and G; F or G is a corner, or
+// both are edges that are not parallel. Otherwise the features of these corners are tried in order,
+// until two features have points as near.
 //
-// Doubles only choose what to try, and leave out features that are provably not closest. So only
-// the final rounding affects the answer.
+// Doubles only choose which features to try, and leave out features that are provably not closest.
+// So only the final rounding affects the answer.
 
 namespace {
 
@@ -80,8 +80,8 @@ unsigned touching(const Corners& t, const Feature& feature, const Vector& d, boo
   return out;
 }
 
-/// Finds the first pair of features that has points as near as `least`. The features may use only
-/// the corners in_a of a and in_b of b. Returns false if there is no such pair.
+/// Finds the first pair of features that has points at the distance of `least`. The features may
+/// use only the corners in_a of a and in_b of b. Returns false if there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
                    Answer& answer) {
   for (const Feature& f : kFeatures) {
@@ -121,7 +121,6 @@ bool farther(const Box& a, const Box& b, double most) {
 
 /// Tries all pairs of features in order. Returns the first pair with the least distance.
 Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  // An upper bound of the distance.
   const double most =
       filter_planes(a, b) == Triage::yes ? 0 : filters::distance_bounds<FilterBounds>(a, b).upper;
   const Boxes a_boxes = boxes_of(a), b_boxes = boxes_of(b);
@@ -144,7 +143,7 @@ Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array
   return best;
 }
 
-/// True iff the guessed features have closest points. Then writes the final answer to `answer`.
+/// True only if closest points of the guessed features are proved. Then writes the final answer.
 bool proved(const Scaled& pair, const closest::Guess& guess, Answer& answer) {
   answer.of_a = guess.of_a;
   answer.of_b = guess.of_b;
@@ -234,8 +233,8 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
 }
 
 // Returns reach (side 0) or start (side 1). The place of a corner is the scalar product of the
-// direction with the corner minus a point of the plane, in integers. It is then rounded: reach up,
-// start down.
+// direction with the corner minus a point of the plane, in integers. Then a reach is rounded up,
+// and a start is rounded down.
 double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
   const Vec3& origin = planes_->on[side];
   double out = 0;

@@ -7,11 +7,11 @@
 // point of A - B. Then only translations above some length separate A and B. Triangles that touch
 // are separated by arbitrarily short translations.
 //
-// Semantics and preconditions as in verify/exact.h: any finite doubles; a degenerate triangle is
-// the segment or the point that it is. The relative interior of a triangle is the triangle without
-// its edges. That of a segment is the segment without its ends. That of a point is the point. Two
-// segments that meet lie in one plane, so they touch. A point touches whatever it meets. Every
-// decision is the sign of a determinant, evaluated exactly.
+// Semantics and preconditions as in verify/exact.h: any finite doubles; a degenerate triangle is a
+// segment or a point. The relative interior is the triangle without its edges, the segment without
+// its ends, or the whole point. Two segments that meet lie in one plane, so they touch. A point
+// touches every triangle that it meets. Every decision is the sign of a determinant, evaluated
+// exactly.
 #pragma once
 
 #include <array>
@@ -76,7 +76,7 @@ std::optional<ContactKind> parse_contact_kind(std::string_view name);
 /// The kind, and the points in common, which are a convex set.
 struct ContactShape {
   ContactKind kind = ContactKind::apart;
-  int dimension = -1;  // of this set: 0 a point, 1 a segment, 2 a polygon; -1 if it is empty
+  int dimension = -1;  // of these points: 0 a point, 1 a segment, 2 a polygon, -1 none
   /// World units. Dimension 1: the ends of the segment, the lexicographically lower end first, each
   /// coordinate rounded once to the nearest double. Dimension 0: the point, twice. Otherwise zeros.
   std::array<Vec3, 2> ends = {Vec3::Zero(), Vec3::Zero()};

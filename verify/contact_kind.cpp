@@ -51,7 +51,7 @@ struct Bound {
   mpz_class value(const Point& p) const { return dot(normal, p.x) - offset * p.w; }
 };
 
-/// A triangle, segment or point as the hull of its corners, and as the points within its bounds.
+/// A triangle, segment or point, both as the hull of `corners` and as the points in all `bounds`.
 struct Hull {
   std::vector<Integers> corners;
   std::vector<Bound> bounds;
@@ -68,7 +68,7 @@ struct Hull {
       for (std::size_t i = 0; i < 3; ++i)
         bounds.emplace_back(cross(n, minus(corners[(i + 1) % 3], corners[i])), corners[i], false);
     } else if (of == Shape::segment) {
-      // The direction d is not 0 along some axis, and e is the unit vector along the next one. So
+      // d = `first` is not 0 along `axis`, and e is the unit vector along the next axis. So
       // d x e is not 0, and d x (d x e) is perpendicular to d and to d x e.
       std::size_t axis = 0;
       while (sgn(first[axis]) == 0) ++axis;
@@ -86,7 +86,7 @@ struct Hull {
   bool is_corner(const Point& p) const {
     return std::ranges::any_of(corners, [&](const Integers& x) { return compare(p, {x}) == 0; });
   }
-  /// True if a point of the hull is on an edge. Every point of a segment is.
+  /// True if a point of the hull is on an edge. Every point of a segment is on an edge.
   bool on_edge(const Point& p) const {
     return corners.size() < 3 || std::ranges::any_of(bounds, [&](const Bound& bound) {
              return !bound.plane && sgn(bound.value(p)) == 0;
@@ -101,9 +101,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to the part with sign * value >= 0. Returns false if nothing is left.
-/// bound.value() is linear in (x, w). So it is 0 at the new end, which is the sum of both old ends,
-/// each times the magnitude of the other end's value.
+/// Cuts a segment to the part with sign * value >= 0. Returns false if nothing is left. The new end
+/// is the sum of both old ends, each times the magnitude of the other end's value. Since
+/// bound.value() is linear in (x, w), it is 0 at the new end.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;

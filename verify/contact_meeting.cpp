@@ -1,8 +1,8 @@
 // Finds how two triangles meet by signs of determinants of their corners (Guigue, Devillers: Fast
 // and robust triangle-triangle overlap test using orientation predicates, 2003). No point is
-// constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h. CGAL decides
-// the other signs, which are of determinants of input points. For these, its kernel Epick is exact
-// (verify/exact.cpp says why).
+// constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h. CGAL's kernel
+// Epick decides the other signs. It is exact for determinants of input points (verify/exact.cpp
+// gives the reasons).
 #include "verify/contact_meeting.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -32,7 +32,7 @@ class Signs {
     const auto e = from(p, q), f = from(p, r), w = from(p, s);
     const int sign = filters::side_of<FilterBounds>(filters::normal_of(e, f), w);
     if (sign != 0) return sign;
-    // A difference of doubles is 0 only if they are equal, since nothing underflows to 0.
+    // A difference is 0 only for equal doubles, since nothing underflows to 0.
     const bool terms = (w.x != 0 && ((e.y != 0 && f.z != 0) || (e.z != 0 && f.y != 0))) ||
                        (w.y != 0 && ((e.z != 0 && f.x != 0) || (e.x != 0 && f.z != 0))) ||
                        (w.z != 0 && ((e.x != 0 && f.y != 0) || (e.y != 0 && f.x != 0)));
@@ -86,8 +86,9 @@ class Signs {
 };
 
 /// Returns the meeting of two triangles in one plane. Each corner of their common part is a corner
-/// of a triangle or a crossing of two edges inside both. If there is such a crossing, the common
-/// part is a polygon. If the common part is a segment, its two ends are its only corners.
+/// of a triangle, or a crossing of two edges at inner points of both edges. If there is such a
+/// crossing, the common part is a polygon. If the common part is a segment, its two ends are its
+/// only corners.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
   int turns[2][3][3];  // [t][i][k]: turn from edge i of triangle t to corner k of the other
@@ -133,10 +134,10 @@ Meeting meeting_in_plane(const Signs& signs, int axis) {
 
 }  // namespace
 
-// If the planes of the triangles differ, let L be their common line. A triangle meets L in nothing,
-// in one corner, or in a segment. In the third case, one corner is alone on its side of the other
-// triangle's plane. The two edges from this corner meet L at the ends of the segment. An end may be
-// a corner.
+// If the planes of the triangles differ, let L be their common line. A triangle does not meet L, or
+// meets it in one corner, or in a segment. In the last case, one corner is alone on its side of the
+// other triangle's plane. The two edges from this corner meet L at the ends of the segment. An end
+// may be a corner.
 //
 // If both triangles meet L in a segment, let p1 and p2 be the lone corners. Let q and r be the
 // other corners, ordered so that p1 is on the positive side of (p2, q2, r2) and p2 is on the

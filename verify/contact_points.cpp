@@ -24,8 +24,8 @@ using closest::Vector;
 template <class N>
 using SixCorners = std::array<Vector<N>, 6>;
 
-/// Returns a normal of the plane of three corners. If an axis is given, the plane is along this
-/// axis and through the first two corners.
+/// Returns a normal of the plane of three corners. If an axis is given, the plane is parallel to
+/// this axis and goes through the first two corners.
 template <class N>
 Vector<N> normal_of(const SixCorners<N>& corners, const std::array<int, 3>& of, int axis = -1) {
   Vector<N> second = {N(0), N(0), N(0)};
@@ -61,7 +61,8 @@ Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
 }
 
 // InWideNumbers and InIntegers have the same functions: at() finds the point at a place, rounded()
-// rounds it, compare() compares two points. An empty answer means that rounding leaves a doubt.
+// rounds it, compare() compares two points. An empty answer means that rounding errors leave a
+// doubt.
 
 class InWideNumbers {
  public:

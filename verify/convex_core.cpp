@@ -1,8 +1,8 @@
 // A core grows around a seed, within a box. Triangles cut the core in the order of their distance
-// from the seed. A cut is made along the triangle's own plane, or along a plane across the shortest
-// way from the seed to the triangle (Deits and Tedrake, Computing Large Convex Regions of
-// Obstacle-Free Space through Semidefinite Programming, 2015, cut so around ellipsoids). For a
-// solid with few flat faces the cores are its largest boxes, wedges and the like.
+// from the seed. A cut is made along the triangle's own plane, or along a plane perpendicular to
+// the shortest segment from the seed to the triangle (like Deits and Tedrake, Computing Large
+// Convex Regions of Obstacle-Free Space through Semidefinite Programming, 2015, for ellipsoids).
+// For a solid with few flat faces, the cores are large boxes or wedges.
 #include "verify/convex_core.h"
 
 #include <Eigen/Geometry>
@@ -53,7 +53,7 @@ struct HalfSpace {
 };
 
 /// True only if normal . (p - seed) > most for all p of t. A product of differences has 5
-/// roundings, relative to the magnitudes. `most` has as many. 16 u covers all of them.
+/// roundings, relative to the magnitudes. `most` has 5 as well. 16 u covers all of them.
 bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
   double least = kInf, magnitude = size;
   for (const Vec3& v : t) {
@@ -64,9 +64,9 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
   return least - most > 16 * kU * normal.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
-/// True only if the hull of the points is proved to be a core, as the top of the header says. near:
-/// all triangles that may meet the hull. planes: their normals are tried before the triangle's
-/// normal.
+/// True only if the hull of the points is proved to be a core, as described in convex_core.h. near:
+/// all triangles that may meet the hull. planes: the normals of these planes are tried before the
+/// normal of a triangle.
 bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
@@ -189,10 +189,10 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
   return out;
 }
 
-/// True only if a plane across t has all corners of a, moved by t, on one side and all corners of b
-/// on the other side. A corner that is moved and projected has 6 roundings, relative to the
-/// magnitude. Far from the origin, corners are taken relative to a corner of the common box of a
-/// and b. These differences are exact along an axis on which no coordinate is more than twice
+/// True only if a plane perpendicular to t has all corners of a, moved by t, on one side and all
+/// corners of b on the other side. A corner that is moved and projected has 6 roundings, relative
+/// to the magnitude. Far from the origin, corners are taken relative to a corner of the common box
+/// of a and b. These differences are exact along an axis on which no coordinate is more than twice
 /// another (Sterbenz, Floating-Point Computation, 1974).
 bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   Vec3 origin = Vec3::Zero();
@@ -274,7 +274,7 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : corners_) middle += p / double(corners_.size());
-  // A thin object needs to be moved more, because of rounding.
+  // The corners of a thin object have to be moved farther, because of rounding.
   for (const double inward : {1e-12, 1e-9, 1e-6}) {
     convex_.clear();
     for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
@@ -398,11 +398,11 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
   return out;
 }
 
-// If the surfaces are apart, but the insides have a common point, then the other object contains a
-// point of one surface, and with it the whole connected piece of this surface. So one corner of
-// each piece decides. A coordinate that is moved in doubles is off by at most 2^-53 of its
-// magnitude. The surfaces are farther apart than two such errors, one for a and one for b. So the
-// rounded corner and the exact corner lie on the same side.
+// Suppose that the surfaces are apart, but the insides have a common point. Then a connected piece
+// of one surface is entirely inside the other object. So it is enough to test one corner of each
+// piece. A coordinate that is moved in doubles is off by at most 2^-53 of its magnitude. The
+// surfaces are farther apart than two such errors, one for a and one for b. So the rounded corner
+// and the exact corner lie on the same side.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   const FloatingPointGuard guard;
   const double magnitude = a.largest() + b.largest() + t.cwiseAbs().maxCoeff();

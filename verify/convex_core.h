@@ -25,7 +25,8 @@ class ClosedObject {
   using Corners = std::array<Vec3, 3>;
 
   /// surface: the result of doubted_surface_of(); not `open`. pieces: one corner of each connected
-  /// piece of the object. Precondition: the object has triangles. The scene has to outlive this.
+  /// piece of the object. Preconditions: the object has triangles; the scene outlives this
+  /// ClosedObject.
   ClosedObject(const Scene& scene, std::uint32_t object, Surface surface,
                std::span<const Vec3> pieces);
 
@@ -40,7 +41,7 @@ class ClosedObject {
   const std::vector<Vec3>& convex() const { return convex_; }
   /// True iff the point is strictly inside, decided exactly.
   bool has(const Vec3& point) const;
-  /// True only if the point is certainly outside. Precondition: the point is not on the surface.
+  /// True only if the point is proved to be outside. Precondition: the point is not on the surface.
   bool has_not(const Vec3& point) const;
   /// Returns the nearest point of the surface, in plain doubles.
   Vec3 nearest(const Vec3& point) const;
@@ -65,7 +66,7 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
                                         std::span<const Vec3> seeds, std::size_t most);
 
 /// True only if the inside of a, moved by the translation, and the inside of b have no common
-/// point. False if the insides are too near to decide, by bounds of all roundings.
+/// point. False also if rounding errors leave a doubt.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& translation);
 
 }  // namespace farcull

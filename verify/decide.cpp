@@ -1,5 +1,5 @@
 // decide(): threads take blocks of candidates in turn. A filter in doubles decides most pairs,
-// several pairs at once on lanes. Exact arithmetic decides the other pairs.
+// several pairs at once on SIMD lanes. Exact arithmetic decides the other pairs.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -41,7 +41,6 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
   Collisions result;
   std::uint64_t unasked = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    // Most answers are counted without a branch.
     const PairAnswer answer = answers[i];
     result.apart += answer == PairAnswer::apart;
     result.neighbours_apart += answer == PairAnswer::neighbours_apart;
@@ -99,8 +98,8 @@ PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corne
   return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
 }
 
-/// Says whether both triangles of a pair are of one object. Fast if pair.a is mostly in the same
-/// object as in the pair before.
+/// Tells whether both triangles of a pair are of one object. Fast if pair.a mostly stays in one
+/// object.
 class SameObject {
  public:
   explicit SameObject(const Scene& scene) : objects_(scene.objects) {}
@@ -297,7 +296,7 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // none while this decides
+  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // none until this ends
   decided_ = candidates.size();
   const bool sorted =
       std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();

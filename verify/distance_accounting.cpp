@@ -1,7 +1,7 @@
 // Each object has a tree of boxes over its triangles. For every two objects that are asked about,
-// the two trees are joined. Two nodes settle all their pairs at once in two cases: their boxes are
-// farther apart than the threshold of these objects, or all their pairs come after an answer of
-// distance 0 (only an earlier pair could refute such an answer). The remaining pairs are decided
+// the two trees are joined. All pairs of two nodes are settled at once in two cases: the boxes are
+// farther apart than the threshold of the objects, or all pairs of the nodes come after an answer
+// of distance 0 (only an earlier pair could refute such an answer). The remaining pairs are decided
 // one by one: first by two parallel planes in doubles, then in integers
 // (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
@@ -26,8 +26,9 @@ namespace farcull {
 // What the answers claim. `objects`: an answer claims that no pair of its objects is nearer. A
 // missing answer claims that no pair of the objects is within the distance asked for. `nearest`: a
 // missing answer claims that neither object is among the k nearest of the other. So no pair of
-// their triangles is nearer than the kth neighbour of either object. No pair is equally near if the
-// other object comes before that neighbour. `all`: every pair within the distance is an answer.
+// their triangles is nearer than the kth neighbour of either object. If the other object has a
+// lower index than this neighbour, no pair is equally near. `all`: the answers are all pairs within
+// the distance.
 
 namespace {
 
@@ -48,8 +49,8 @@ class Undecided {
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// The pairs that follow are of two objects (self: of one object), and have this threshold.
-  /// answer: the answer about these objects, if there is one; none for `all`.
+  /// Sets the threshold of the pairs that are added next: pairs of two objects (self: of one
+  /// object). answer: the answer about these objects, if there is one; none for `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
     now_ = std::make_shared<const Asked>(Asked{threshold, self, answer});
   }
@@ -88,13 +89,13 @@ class Undecided {
       return &DistanceAccounting::farther_by_planes;
     if (pair.asked->self && share_position(s, t)) return &DistanceAccounting::neighbours;
     if (!length) return &DistanceAccounting::nearer;
-    // A pair before the answer must be farther than the answer. A pair after it must be at least as
-    // far.
+    // A pair before the answer must be farther apart than the answer. A later pair must be at least
+    // as far apart.
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return &DistanceAccounting::farther_by_exact;
-    // No direction shows that the pair is far enough. So its nearest points must show that it is
-    // near.
+    // No direction shows that the pair is far enough apart. So its nearest points must show that it
+    // is not.
     const auto order = integer_distance(s, t).squared <=> length->squared;
     if (order > 0 || (order == 0 && or_as_far)) {
       throw std::logic_error(
@@ -133,7 +134,7 @@ class Join {
     if (nothing_is_nearer(threshold) && !answers.empty()) first_ = answers.front().pair;
   }
 
-  /// True if the threshold is "below 0", so that no pair can be nearer.
+  /// True if the threshold is "below 0", so that no pair can be within it.
   static bool nothing_is_nearer(const Threshold& threshold) {
     return threshold.length && threshold.length->squared.over == 0 &&
            threshold.bound == Bound::below;
@@ -265,7 +266,7 @@ DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistan
 }
 
 void DistanceClaims::find_farthest() {
-  // Per object: the distances to other objects in its answers, and these objects.
+  // Per object: other objects in answers about it, each with the squared distance.
   std::vector<std::vector<std::pair<Fraction, std::uint32_t>>> neighbours(scene_.objects.size());
   for (std::size_t k = 0; k < answers_.size(); ++k) {
     if (!squares_[k]) continue;

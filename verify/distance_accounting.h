@@ -3,8 +3,8 @@
 //
 // The accounting shares no code with the culling, nor with verify/closest.h, which computed the
 // answers. Its boxes are those of the checker of certificates. Each answer is decided in integers
-// (verify/certificate/integer_distance.h). So is each pair that neither boxes nor planes prove far
-// apart.
+// (verify/certificate/integer_distance.h). Each pair that neither boxes nor planes prove far apart
+// is decided in integers, too.
 #pragma once
 
 #include <array>
@@ -37,7 +37,6 @@ struct ClaimedDistance {
   InsideClaim inside = InsideClaim::unknown;  // unknown if the objects meet, or if a == b
 };
 
-/// A question about the distances of a scene.
 struct DistanceQuestion {
   /// objects: the nearest pair of every two objects, and the nearest pair within each `self`
   /// object.
@@ -55,13 +54,13 @@ struct DistanceQuestion {
 
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class: the first
 /// that fits. A pair is *nearer* if it is nearer than its answer, or if it should be an answer
-/// itself. It is *earlier* if it is as near as the answer about its objects but comes first, so it
-/// should be that answer.
+/// itself. A pair is *earlier* if it is as near as the answer about its objects and precedes the
+/// answer in order, so it should be the answer.
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;        // computed from the sizes of the objects
   std::uint64_t answers = 0;            // pairs that the answers name
-  std::uint64_t objects_meet = 0;       // pairs after an answer of distance 0, or of objects whose
-                                        // kth neighbour is at distance 0
+  std::uint64_t objects_meet = 0;       // pairs that come after an answer of distance 0, or whose
+                                        // objects have their kth neighbour at distance 0
   std::uint64_t farther_by_boxes = 0;   // proved far enough apart by gaps between boxes
   std::uint64_t farther_by_planes = 0;  // proved far enough apart by two parallel planes
   std::uint64_t neighbours = 0;         // neighbours in one object (verify/exact.h); never answers
@@ -105,11 +104,11 @@ bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {
  public:
-  /// Throws std::logic_error as account_distances().
+  /// Throws std::logic_error as account_distances() does.
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// Returns a threshold: each pair of triangles of the objects a <= b within it has to be an
+  /// Returns the threshold within which each pair of triangles of the objects a <= b has to be an
   /// answer.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// Returns the answers about the objects a <= b.

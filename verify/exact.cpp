@@ -1,18 +1,18 @@
 // The predicates about two triangles by CGAL. Only this file and contact_meeting.cpp include CGAL,
-// which compiles slowly. They include only its kernel, which is under the LGPL.
+// which compiles slowly. Both include only CGAL's kernel, which is under the LGPL.
 //
 // CGAL's kernel Epick decides exactly here, for reasons that were read from the headers of CGAL
 // 5.5.1. The tests compare it with integer arithmetic.
-// - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment asks only
-//   orientation_3 and coplanar_orientation_3 about input points (Guigue, Devillers: Fast and robust
-//   triangle-triangle overlap test using orientation predicates, 2003). Both have preconditions on
-//   degeneracy, so triangles are first sorted into shapes.
+// - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment calls only
+//   orientation_3 and coplanar_orientation_3 of input points (Guigue, Devillers: Fast and robust
+//   triangle-triangle overlap test using orientation predicates, 2003). Both overloads have
+//   preconditions on degeneracy, so triangles are first classified by shape().
 // - Each other do_intersect (segment/segment constructs supporting lines) is one
 //   Filtered_predicate. It runs the whole function, with its constructions, over intervals. If that
 //   leaves a doubt, it runs the function over rationals. Nothing is rounded in between.
 // - Overflow: static filters do not decide if a difference of coordinates exceeds 1e102 (1e153 for
-//   collinearity) or if products could underflow. Intervals round outward to infinity, and
-//   0 * infinity widens them.
+//   collinearity) or if products could underflow. Intervals are rounded outward, to
+//   infinity if necessary; a product 0 * infinity only widens an interval.
 // CGAL's intersection() is never called: with inexact constructions it misses intersections (CGAL
 // issue 6384).
 #include "verify/exact.h"
@@ -56,7 +56,7 @@ bool hulls_meet(const Hull& p, const Hull& q) {
 }
 
 /// Divides a degenerate triangle into the segments from a corner to the other two corners. A
-/// triangle that is not degenerate is its own only part.
+/// triangle that is not degenerate is returned as its only part.
 std::vector<Corners> parts_at(const Corners& t, int corner) {
   if (shape(t) == Shape::triangle) return {t};
   const Vec3& v = t[corner];
@@ -103,8 +103,8 @@ bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s
     return CGAL::coplanar(point(p), point(q), point(r), point(s)) &&
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
-  // Both triangles are segments on the line of p and q. Do they extend beyond the same end of the
-  // edge?
+  // Both triangles are segments on the line of p and q. They share more than the edge iff they
+  // extend beyond the same end of it.
   const auto ends = std::minmax(p, q, lexicographically_less);
   const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };
   const auto above = [&](const Vec3& x) { return lexicographically_less(ends.second, x); };

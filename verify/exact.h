@@ -1,15 +1,15 @@
-// Exact answers about triangles in double coordinates. They are the truth that culling is measured
-// against. The method `exact` gives them for every pair of triangles that counts, without culling.
+// Exact answers about triangles in double coordinates. Culling is measured against them. The method
+// `exact` decides every pair that counts, without culling.
 //
 // Semantics: a triangle is the closed convex hull of its three corners with the doubles as given,
-// so touching counts, and a degenerate triangle is the segment or the point that it is. Every
-// decision is the sign of a polynomial that is evaluated exactly (filtered, then rational); no
-// rounded construction ever decides.
+// so touching counts, and a degenerate triangle is a segment or a point. Every decision is the sign
+// of a polynomial that is evaluated exactly (filtered, then rational); no rounded construction ever
+// decides.
 //
 // Neighbours are two triangles of one object that share a vertex position (-0.0 equals 0.0). Their
 // *shared part* is the shared positions and the segments between any two of them. The shared part
 // is no collision. Neighbours collide iff their intersection is more than the shared part. With one
-// shared position, they collide iff a further point is common. With two, they collide iff the
+// shared position, they collide iff they have another common point. With two, they collide iff the
 // intersection is more than the edge between the positions. Triangles with the same three corners
 // collide unless the corners are collinear.
 //
@@ -98,7 +98,7 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 
 struct FirstCollisions {
-  Collisions collisions;      // its counts are of the decided candidates
+  Collisions collisions;      // its counts cover only the decided candidates
   std::uint64_t decided = 0;  // this many candidates, from the first one on, were decided
   bool complete = true;       // all candidates were decided, and at most `limit` collide
 };
@@ -109,12 +109,13 @@ struct FirstCollisions {
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes the last pairs of both lists until `limit` pairs are left in all. Returns whether there
-/// were more. The counts stay. Precondition: both lists are sorted.
+/// Removes the last pairs, in the order of both lists together, until at most `limit` pairs are
+/// left. Returns true if pairs were removed. Does not change counts. Precondition: both lists are
+/// sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);
 
 /// decide() for successive frames of a scene. The answer about a pair depends only on the corners
-/// of its triangles, so if neither triangle moved, the answer of the last frame holds.
+/// of its triangles, so if neither triangle moved, the answer of the last frame is still right.
 class FrameDecider {
  public:
   /// Like farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses
@@ -141,14 +142,14 @@ struct ExactResult : Collisions {  // both lists sorted, each pair once
                                    // along an axis, computed in double, is above the clearance
   std::uint64_t ignored = 0;       // pairs with overlapping boxes whose objects are ignored
   double join_ms = 0;              // wall clock of making and joining the boxes
-  double predicates_ms = 0;        // mean time of the deciding threads, plus sorting the answers
+  double predicates_ms = 0;        // mean time of the deciding threads, plus time for sorting
 };
 
 /// The method `exact`: a tree of boxes in doubles finds the pairs whose boxes overlap, and decide()
 /// decides these pairs in the threads that find them. Memory O(triangles + colliding pairs), since
 /// candidates are not stored. The tree (core/boxes/join.h) uses no view, no error budget and no
 /// float. A test compares its pairs with the pairs of CGAL's join, which shares no code with the
-/// tree. ignored: pairs of objects that do not count, as in_order() gives them.
+/// tree. ignored: pairs of objects that do not count, as returned by in_order().
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});
 

@@ -1,11 +1,12 @@
-// The filters with the proved bounds. filter_pairs() runs on lanes of doubles: each lane has a pair
-// of its own. Every operation rounds once, so the answers are the same as those of the scalars. The
+// The filters with the proved bounds. filter_pairs() runs on SIMD lanes: each lane has a pair of
+// its own. Every operation rounds once, so the answers are the same as those of the scalars. The
 // operations on lanes are defined here, since verification shares no code with the canvas
 // (core/native) that it checks.
 //
 // Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
 // triangles. The few pairs whose triangles cross each other's planes are gathered again, so that
-// the lanes stay full. Then the corners are reordered for the comparison along the line.
+// the lanes stay full. Then the corners are reordered for the comparison along the line of the
+// planes.
 #include "verify/filter.h"
 
 #include <algorithm>
@@ -83,7 +84,7 @@ struct PointOf {
   HWY_INLINE Real z() const { return Real(hn::Load(Tag(), at + 2 * stride)); }
 };
 
-constexpr int kBatch = 64;  // so many pairs fit into the fastest cache
+constexpr int kBatch = 64;  // a batch of this size fits into the fastest cache
 using Point = PointOf<kBatch>;
 
 #define FAR_FILTER HWY_INLINE

@@ -17,7 +17,6 @@ FAR_FILTER Triple magnitudes(const Triple& p) { return {abs(p.x), abs(p.y), abs(
 FAR_FILTER Real dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 FAR_FILTER Real sum(const Triple& p) { return p.x + p.y + p.z; }
 
-/// The larger magnitude of p and q, per axis.
 FAR_FILTER Triple largest(const Triple& p, const Triple& q) {
   return {max(abs(p.x), abs(q.x)), max(abs(p.y), abs(q.y)), max(abs(p.z), abs(q.z))};
 }
@@ -34,8 +33,8 @@ FAR_FILTER Normal normal_of(const Triple& e, const Triple& f) {
   return {{yz - zy, zx - xz, xy - yx}, {abs(yz) + abs(zy), abs(zx) + abs(xz), abs(xy) + abs(yx)}};
 }
 
-/// Returns an error bound of dot(normal.n, x) for points x relative to the origin of the normal,
-/// with |x| <= w per axis.
+/// Returns an error bound of dot(normal.n, x) for all x with |x| <= w per axis; x is relative to
+/// the common corner of the normal's edges.
 template <class Bounds>
 FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
   return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
@@ -43,12 +42,12 @@ FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
 
 // ---- sides of planes ----
 
-/// Determinants of each corner of s with the plane through the corners of t. The sign of a value is
-/// proved if its magnitude is above `bound`.
+/// For each corner of s, a determinant whose sign is the corner's side of the plane of t. The sign
+/// is proved if the magnitude is above `bound`.
 struct Sides {
   Real value[3];
   Real bound;
-  Real needed;  // a larger |value| proves a distance above the clearance
+  Real needed;  // |value| > bound + needed proves a distance above the clearance
 
   FAR_FILTER Real least() const { return min(min(value[0], value[1]), value[2]); }
   FAR_FILTER Real most() const { return max(max(value[0], value[1]), value[2]); }
@@ -63,8 +62,8 @@ struct Sides {
 };
 
 /// Returns the clearance times the length of the normal, rounded up. The computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact normal per axis. kLeastSquare makes up for squares
-/// that underflow. 8 roundings follow.
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact normal per axis. kLeastSquare covers squares that
+/// underflow. kNormalRounding covers the 8 roundings that follow.
 FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
   const Real length = sqrt(dot(normal.n, normal.n) + kLeastSquare);
   return clearance * (length + sum(normal.m) * kNormalLength) * (1 + kNormalRounding) + 0x1p-1000;
@@ -84,7 +83,7 @@ FAR_FILTER Sides sides(const Point* s, const Point* t, PlainReal clearance) {
 /// The answers that the planes alone give.
 struct AgainstPlanes {
   Truth apart;     // a triangle is on one side of the other's plane, beyond the clearance
-  Truth crossing;  // each is on both sides of the other's plane; not set if `apart` is
+  Truth crossing;  // each is on both sides of the other's plane; false if `apart` is true
   Sides a, b;      // of the corners of a and of b; `a` is not valid if every lane is apart
 };
 
@@ -101,9 +100,9 @@ FAR_FILTER AgainstPlanes against_planes(const Point* a, const Point* b, PlainRea
 
 // ---- along the line of two planes ----
 
-/// The answers that the line of crossing planes gives.
+/// The answers of compare_on_line().
 struct OnLine {
-  Truth apart, meeting;  // neither: a doubt
+  Truth apart, meeting;  // if neither is true, rounding leaves a doubt
 };
 
 /// Compares the segments that the two triangles cover on the line of their planes. The corners are

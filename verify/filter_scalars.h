@@ -14,14 +14,12 @@
 
 namespace farcull {
 
-// If the planes of two triangles cross, the triangles are compared along the line of the planes.
-
 /// Corners of a and of b, by number. One corner of each triangle lies alone on its side of the
 /// other's plane. The two edges from this corner cross the line of the planes; the triangle covers
 /// the segment between the crossings. The other two corners are ordered so that the other
-/// triangle's lone corner is on the positive side of the plane. So the ends of each segment are in
-/// a known order along the line, and two determinants compare the segments (Guigue, Devillers: Fast
-/// and robust triangle-triangle overlap test using orientation predicates, 2003).
+/// triangle's lone corner is on the positive side of this triangle's plane. So the ends of each
+/// segment are in a known order along the line, and two determinants compare the segments (Guigue,
+/// Devillers: Fast and robust triangle-triangle overlap test using orientation predicates, 2003).
 struct CornerOrder {
   std::array<std::uint8_t, 3> a, b;  // the lone corner comes first
 };
@@ -54,28 +52,28 @@ namespace farcull::filters {
 
 // ---- against planes ----
 //
-// Gappa proves the constants (docs/proofs.md, `filter.*`); these are the reasons. The bounds follow
+// Gappa proves the constants (docs/proofs.md, `filter.*`). The reasons follow. The bounds follow
 // Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3. Shewchuk, Adaptive
 // Precision Floating-Point Arithmetic, 1997, bounds the same determinant. u = 2^-53.
 //
 // Side of a plane. With e = p - o, f = q - o and w = x - o, the determinant is a sum of six terms
-// e_i f_j w_k. A term meets at most 8 roundings: three differences, e_i f_j, the difference in n_k,
+// e_i f_j w_k. A term has at most 8 roundings: three differences, e_i f_j, the difference in n_k,
 // n_k w_k, and two sums. So the computed determinant is off by at most ((1 + u)^8 - 1) P, where the
 // permanent P is the sum of the exact |e_i f_j w_k|. P is computed by the same operations on
-// magnitudes. Larger |w_k| only make it larger. With two more roundings for the bound, 9 u suffice.
+// magnitudes. Larger |w_k| only make P larger. With two more roundings for the bound, 9 u suffice.
 //
-// Product of two normals: 11 roundings, and 13 for the bound; 12 u suffice. Projection of w = x - o
-// onto a given direction, whose doubles count as exact: 4 roundings, and 6 for the bound, which the
-// 9 u for sides of planes cover.
+// Product of two normals: it has 11 roundings, and its bound has 13; 12 u suffice. Projection of w
+// = x - o onto a given direction, whose doubles count as exact: it has 4 roundings, and its bound
+// has 6. The 9 u for sides of planes cover this.
 //
 // Underflow. Differences and sums of doubles are exact if they are subnormal. A product is off by
 // at most 2^-1075 more; all later roundings make that at most 2^-1073 (|w|_1 + 2) for the
 // determinant, and likewise for the others. `absolute` is more than 2^70 times that, so that it and
-// its products with numbers of at least 1 are normal numbers, on which every processor is fast.
+// its products with numbers of at least 1 are normal numbers, which every processor handles fast.
 //
-// Overflow. For every operation of D the permanent has the same operation on magnitudes, whose
-// result is at least as large, since rounding is monotone. So if anything overflows, the bound is
-// infinite or not a number, and no comparison with it holds.
+// Overflow. For every operation of the determinant the permanent has the same operation on
+// magnitudes, whose result is at least as large, since rounding is monotone. So if anything
+// overflows, the bound is infinite or not a number, and no comparison with it holds.
 
 using PlainReal = double;
 using Real = double;
@@ -117,8 +115,8 @@ inline unsigned above(const Sides& sides) {
   return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
 }
 
-/// True if the plane with normal d surely divides: w1 and w2 are on its positive side, x1 and x2 on
-/// its negative side. All four are differences of coordinates.
+/// True only if w1 and w2 are on the positive side of the plane through 0 with normal d, and x1 and
+/// x2 on its negative side. All four are differences of corners.
 template <class Bounds>
 bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& x1,
              const Triple& x2) {
@@ -141,11 +139,11 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
 
 // Corners are relative to v; N = a1 x a2 and M = b1 x b2. The signs of A1 = M . a1 and A2 = M . a2
 // say on which sides of b's plane a's corners lie. The signs of B1 = N . b1 and B2 = N . b2 say the
-// same of b's corners. If A1 and A2 have the same sign, a meets b's plane in v alone; likewise B1
-// and B2. Otherwise each triangle meets the line of both planes in a segment from v. The segments
-// have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1): these are sums with
-// weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1 = N x M.
-// So the directions are the same iff A2 and B2 differ in sign.
+// same of b's corners. If A1 and A2 have the same sign, a meets b's plane only in v. The same holds
+// for B1 and B2. Otherwise each triangle meets the line of both planes in a segment from v. The
+// segments have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1): these are
+// sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1
+// = N x M. So the directions are the same iff A2 and B2 differ in sign.
 template <class Bounds>
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2) {
@@ -193,8 +191,8 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 // Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
 // 5.1.5 and 5.1.9). The points can prove that the triangles are near, and the direction between the
 // points can prove that they are not. If neither is proved, the answer is `unknown`; so a wrong
-// guess never makes a wrong answer. Gappa proves the constants (docs/proofs.md, `distance.*`);
-// these are the reasons.
+// guess never makes a wrong answer. Gappa proves the constants (docs/proofs.md, `distance.*`). The
+// reasons follow.
 //
 // All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by at most u
 // |x|. R is the largest |coordinate| of these differences.
@@ -211,9 +209,8 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 // less than 4 u of itself, which the factor 1 + 8 u covers.
 //
 // Underflow: products are off by at most 2^-1075, far below `absolute`. The computed length of d is
-// accurate only if its square is at least 2^-900; the proof of "near" takes a shorter length as
-// 2^-450, and "far" answers `unknown`. Overflow: as for planes; infinities and NaNs satisfy no
-// comparison.
+// accurate only if its square is at least 2^-900. If it is less, "near" uses the length 2^-450, and
+// "far" answers `unknown`. Overflow: as for planes; infinities and NaNs satisfy no comparison.
 
 using Corners = std::array<Vec3, 3>;
 
@@ -221,7 +218,6 @@ using Corners = std::array<Vec3, 3>;
 /// i, or kFace.
 constexpr int kCorner = 3, kFace = 6;
 
-/// The best guess so far.
 struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
@@ -281,7 +277,6 @@ inline Vec3 extent_of(const Corners& a, const Corners& b) {
   return most;
 }
 
-/// Returns the corners relative to a point.
 inline Corners relative_to(const Vec3& origin, const Corners& t) {
   return {t[0] - origin, t[1] - origin, t[2] - origin};
 }

@@ -2,8 +2,8 @@
 // point x in direction d. The sign of d . ((p - x) x (q - x)) tells on which side of the line an
 // edge from p to q passes. If all three edges of a triangle pass on one side, the line crosses the
 // triangle. The sign of the determinant of the corners relative to x tells whether the crossing is
-// before or behind x. Doubles find the signs, with the bound of filter_scalars.h; if they leave a
-// doubt, rationals do.
+// ahead of x or behind it. Doubles find the signs, with the bound of filter_scalars.h; if they
+// leave a doubt, rationals do.
 #include "verify/inside.h"
 
 #include <algorithm>
@@ -42,16 +42,17 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
   return sgn(dot(third, cross(minus(exact(p), at), minus(exact(q), at))));
 }
 
-/// Returns 0 if the ray from x misses the triangle, otherwise 1 or -1 by the side that it comes
-/// from. Empty if the line of the ray meets an edge or lies in the triangle's plane. Precondition:
-/// x is not on the triangle.
+/// Returns 0 if the ray from x misses the triangle, otherwise 1 or -1 by the side from which the
+/// ray comes. Empty if the line of the ray meets an edge or lies in the triangle's plane.
+/// Precondition: x is not on the triangle.
 std::optional<int> crossing(const Corners& t, const Vec3& x, const Vec3& d) {
   std::array<int, 3> side{};
   for (int i = 0; i < 3; ++i) side[i] = triple_sign(t[i], t[(i + 1) % 3], x, d, false);
   const auto [least, most] = std::minmax({side[0], side[1], side[2]});
   if (least < 0 && most > 0) return 0;  // the line misses the triangle
   if (least == 0 || most == 0) return std::nullopt;
-  // x + s d is in the plane for s = det / (sum of the three products with the signs `side`).
+  // The line crosses the plane at x + s d, where s is this determinant divided by a sum of three
+  // products with the signs `side`.
   return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? side[0] : 0;
 }
 
@@ -177,7 +178,7 @@ Surface surface_of(const std::vector<Edge>& edges) {
   return oriented ? Surface::oriented : Surface::closed;
 }
 
-/// False only if two triangles with a common edge certainly do not lie on each other.
+/// Returns false only if two triangles with a common edge are sure to overlap nowhere else.
 bool may_be_folded(const Corners& a, const Corners& b) {
   const Vec3 e = a[1] - a[0], f = a[2] - a[0], g = b[2] - a[0];
   const double of_a = e.norm() * f.norm(), of_b = e.norm() * g.norm();

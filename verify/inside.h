@@ -37,7 +37,7 @@ bool is_closed(const Scene& scene, std::uint32_t object);
 /// Throws std::logic_error if the scene does not have the object.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);
 
-/// The same, given the result of surface_of(), which takes most of the time.
+/// Like the function above, but takes the result of surface_of(), which is slow to compute.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 }  // namespace farcull

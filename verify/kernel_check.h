@@ -29,15 +29,15 @@ void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, Ker
 void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
                      KernelTally& tally);
 
-/// A triangle near a pixel centre, of one of the kinds that are hard. ordinary: true if the
-/// triangle is of moderate size and slope.
+/// A triangle near a pixel centre, of one of the hard kinds in verify/kernel_cases.h. ordinary:
+/// true if the triangle is of moderate size and slope.
 struct KernelTriangle {
   std::array<Vec3, 3> corners;
   double radius;  // px
   bool ordinary;
 };
-/// Each function returns the case of a seed and an index, the same on every machine. The floats of
-/// adversarial solids are drawn directly, not computed from a triangle.
+/// Each of these functions returns the case that a seed and an index define, the same on every
+/// machine. The floats of adversarial solids are drawn directly, not computed from a triangle.
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);

@@ -1,6 +1,6 @@
-// Finds contacts. The filter of distances (verify/filter_scalars.h) keeps the weights of its
-// points, which give the contact of near triangles. For crossing triangles, an edge through a face
-// gives the contact. Exact arithmetic decides the rest.
+// Finds contacts. The contact of near triangles comes from the two points of the distance filter
+// (verify/filter_scalars.h). The contact of crossing triangles is a point where an edge passes
+// through a face. Exact arithmetic decides the other pairs.
 #include "verify/near_contact.h"
 
 #include <algorithm>
@@ -19,12 +19,12 @@ using Corners = std::array<Vec3, 3>;
 // ---- in doubles
 //
 // Distance. distance_bounds() gives two bounds of the exact distance D. The length L of the
-// difference of two computed points lies between them. They are accepted if they differ by at most
-// 2^-33 of the lower one, so L is off by at most 2^-32 D. The factor 2 covers the roundings of that
-// comparison.
+// difference of two computed points lies between them. The bounds are accepted if they differ by at
+// most 2^-33 of the lower one, so L is off by at most 2^-32 D. The factor 2 covers the roundings of
+// that comparison.
 //
 // Normal. Let w be the exact difference of nearest points, so |w| = D. Let x be the exact
-// difference of the points that have the computed weights, divided by their sum.
+// difference of the points that have the computed weights (divided by the sum of the weights).
 // - The computed difference is off from x by at most the difference of the bounds, so
 //   |x| <= D (1 + 2^-32).
 // - All differences of a point of b and a point of a form a convex set. w is its point nearest to
@@ -36,8 +36,8 @@ using Corners = std::array<Vec3, 3>;
 // Points. With weights l_1, l_2 and corners c_0 to c_2 the point is
 // c_0 + ((c_1 - c_0) l_1 + (c_2 - c_0) l_2). The differences are off by u R. Products and sums add
 // 3 u R, as the weights sum to at most 1 + u. If rounding makes the weight of c_0 negative, it is
-// set to 0, which moves the point by 2 u R. All this is below 8 u R. The sum with c_0 is rounded
-// last.
+// set to 0, which moves the point by 2 u R. All this is below 8 u R. The last rounding is that of
+// the sum with c_0.
 
 /// Returns the feature on which the point with these weights lies.
 Feature feature_of(const Vec3& weights) {
@@ -61,7 +61,7 @@ Vec3 edge_weights(int edge, double along) {
 }
 
 /// Returns the weights of a point. on: its place, as in filters::Closest. along: how far along an
-/// edge.
+/// edge. l, m: the weights of corners 1 and 2 of a face.
 Vec3 weights_of(int on, double along, double l, double m) {
   if (on == filters::kFace) return {std::max(1 - l - m, 0.0), l, m};
   return on < filters::kCorner ? edge_weights(on, along) : edge_weights(on - filters::kCorner, 0);
@@ -84,12 +84,13 @@ NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3
 /// An edge of one triangle that passes through the face of the other one.
 struct Passing {
   double least = -HUGE_VAL;  // the least weight of the point in the face
-  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // on a, and on b
+  std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of the point on a, then on b
   int side = 0;                                                // 0: the edge is one of a; 1: of b
-  double gap = HUGE_VAL;  // between the points, summed over axes
+  double gap = HUGE_VAL;  // distance of the points along the axes, summed
 };
 
-/// Keeps in `best` the edge of x whose point on y's plane is deepest in y. side: 0 if x is a.
+/// Sets `best` to the edge of x that crosses y's plane deepest inside y, if it is deeper than
+/// `best`. side: 0 if x is a, 1 if x is b.
 void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) {
   const Vec3 e = y[1] - y[0], f = y[2] - y[0], n = e.cross(f);
   const double nn = n.squaredNorm();
@@ -151,7 +152,7 @@ NearContact exact_contact(const Corners& a, const Corners& b, const Closest& clo
       weights[closest::edge_end(feature.index)] = rounded_quotient(l, below, 0);
       continue;
     }
-    if (other.kind == FeatureKind::edge) {  // the multiples of the point in the face
+    if (other.kind == FeatureKind::edge) {  // computes multiples for the point in the face
       const Scaled::Corners& face = side == 0 ? pair.a : pair.b;
       const auto e = closest::minus(face[1], face[0]), f = closest::minus(face[2], face[0]);
       const auto n = closest::cross(e, f);

@@ -20,8 +20,9 @@ struct NearContact {
   std::array<Feature, 2> features;  // p and q lie on these features: the corners with weights > 0
 };
 
-/// Returns the contact with the result of closest_points(a, b). Distance, points and weights are
-/// each rounded once. Each coordinate of the normal is off by at most 8 u of itself, u = 2^-53.
+/// Returns the contact with the points `closest`, given by closest_points(a, b). Distance, points
+/// and weights are each rounded once. Each coordinate of the normal is off by at most 8 u of
+/// itself, u = 2^-53.
 NearContact exact_contact(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                           const Closest& closest);
 
@@ -37,7 +38,8 @@ constexpr double kContactTolerance = 0x1p-33;
 ///   triangles meet or the exact distance is rounded to 0.
 /// - points: each is in its triangle up to 2^-45 R and the rounding of its coordinates. Their
 /// difference has the length `distance`, up to the same errors. Other points may be as near.
-/// - weights: their sum is 1 up to 4 u. The mean of the corners is the point, up to its errors.
+/// - weights: their sum is 1 up to 4 u. The weighted mean of the corners is the point, up to its
+///   errors.
 /// - normal: its difference from the exact normal, which is unique, is at most 2^-15 long.
 std::optional<NearContact> contact_within(const std::array<Vec3, 3>& a,
                                           const std::array<Vec3, 3>& b, double within,

@@ -9,8 +9,8 @@
 // (closest_points.cpp, "Proof of a guess"). Here p may be any corner of F, and q any corner of G,
 // since w is perpendicular to both features.
 //
-// Doubles decide the signs if they are beyond the rounding errors: kTie and the constants after it
-// (verify/rounding.h) bound these errors, and docs/proofs.md has the proofs (`distance.tie`).
+// Doubles decide the signs if the products exceed the rounding errors: kTie and the constants after
+// it (verify/rounding.h) bound these errors, and docs/proofs.md has the proofs (`distance.tie`).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -165,7 +165,7 @@ std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const Tria
   // bound 0 stay in order, and the first pair that touches ends the search.
   std::ranges::stable_sort(left, {}, [](const Candidate& c) { return c.bounds.lower; });
   for (const auto& [at, bounds] : left) {
-    if (bounds.lower > at_most) break;  // all later ones are farther, too
+    if (bounds.lower > at_most) break;  // all later candidates are farther, too
     if (at_most == 0 && at > best) continue;
     const auto [a, b] = corners(at);
     if (at_most > 0 && same.are_those_of(a, b)) {

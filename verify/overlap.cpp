@@ -130,11 +130,11 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   return sum;
 }
 
-/// Whether the places just below and just above a point of a plane, along an axis, are inside an
-/// object. The two rules are in overlap.h.
+/// The places just below (0) and just above (1) a point of a plane, along an axis: are they inside
+/// an object? overlap.h has the two rules that decide this.
 struct Sides {
-  std::array<bool, 2> perhaps{};  // one of the two rules shows it
-  std::array<bool, 2> inside{};   // both rules show it
+  std::array<bool, 2> perhaps{};  // at least one rule says yes
+  std::array<bool, 2> inside{};   // both rules say yes
 };
 
 /// Returns the sides of p. Empty if the line through p along the axis meets an edge, or if a
@@ -142,7 +142,7 @@ struct Sides {
 std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
                               const Q3& p, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  // get_d() cuts off, so the exact coordinate is between these doubles and the next ones.
+  // get_d() truncates, so the exact coordinate lies between the neighbours of its double.
   const double pu = p[u].get_d(), pv = p[v].get_d();
   const auto below = [](double x) { return std::nextafter(x, -HUGE_VAL); };
   const auto above = [](double x) { return std::nextafter(x, HUGE_VAL); };
@@ -224,8 +224,8 @@ class PieceTest {
         triangles_(scene.objects[objects.a].triangle_count +
                    std::size_t{scene.objects[objects.b].triangle_count}) {}
 
-  /// Returns whether pieces of triangle t of object `own` prove that it overlaps the other object.
-  /// others: the triangles of the other object that meet t.
+  /// Returns whether pieces of triangle t of object `own` prove that `own` overlaps the other
+  /// object. others: the triangles of the other object that meet t.
   Overlap test(std::uint32_t own, std::uint32_t t, std::span<const std::uint32_t> others) {
     const Corners corners = scene_.corners(t);
     if (shape(corners) != Shape::triangle) return Overlap::unknown;
@@ -235,7 +235,7 @@ class PieceTest {
       cut_by(pieces, plane, scene_.corners(other));
       if (pieces.size() > kMostPieces) return Overlap::unknown;
     }
-    // Where its own object meets t, the inside of this object changes within t.
+    // Other triangles of its own object cut t, too, since its inside may change there.
     const Box box = box_of(corners);
     for_triangles(scene_, own, [&](const Corners& other) {
       if (pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
@@ -271,7 +271,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // parts connected with the triangle may be inside
+        out = Overlap::unknown;  // what is connected with the piece may be inside
       return out;
     }
     return Overlap::unknown;

@@ -1,28 +1,28 @@
 // Decides whether two objects without crossing triangles overlap, or merely touch.
 //
-// The kinds of contact (verify/contact.h) do not tell. Two equal boxes overlap if one is moved
-// along an axis by half of its length, but no two of their triangles cross. A surface may also pass
-// through another surface along an edge. So two objects are said to touch only by one of two
-// proofs:
+// The kinds of contact (verify/contact.h) do not decide this. Two equal boxes overlap if one is
+// moved along an axis by half of its length, but no two of their triangles cross. A surface may
+// also pass through another surface along an edge. So one of two proofs is needed to say that two
+// objects merely touch:
 //
 // - A plane has the two objects on different sides; both may touch it. Then their insides have no
 //   point in common.
-// - Both objects are closed, and no *piece* of a triangle shows an overlap. The planes of the
-//   triangles that meet a triangle cut it into pieces (if such a triangle lies in the same plane,
-//   the lines of its edges do). All of a piece is inside the other object, or outside it, or on its
+// - Both objects are closed, and no *piece* of a triangle shows an overlap. Each triangle is cut
+//   into pieces by the planes of the triangles that meet it (or by the lines of their edges, if
+//   they lie in its plane). A piece is entirely inside the other object, outside it or on its
 //   surface. So one point of the piece decides.
 //
 // Why the pieces suffice: if the objects overlap, the boundary of the overlap has a point on a
 // face, with the overlap on one side of the face. If this face has a contact, one of its pieces
-// shows the overlap. If not, the face is inside the other object. So is all that is connected with
-// the face up to the next contact, where a piece of a triangle is inside. If that part of the
-// object has no contact, one of its vertices shows the overlap. The answer is unknown if a piece
-// has its own object on neither side, as in a fold.
+// shows the overlap. If not, the face is inside the other object. Then the surface around the face
+// is inside as well, up to the next contact, where a piece of a triangle shows the overlap. If this
+// connected part of the surface has no contact, one of its vertices shows the overlap. The answer
+// is unknown if a piece has its own object on neither side, as in a fold.
 //
-// Two rules may say that a point is inside a mesh: a ray from the point crosses the mesh an odd
-// number of times, or more often in one direction than in the other. If both rules say so, the
-// point is inside. If only one rule shows an overlap, the answer is unknown, so overlapping shells
-// hide nothing.
+// There are two rules for a point inside a mesh: a ray from the point crosses the mesh an odd
+// number of times, or more often in one direction than in the other. If both rules hold, the point
+// is inside. If only one rule shows an overlap, the answer is unknown, so overlapping shells cannot
+// hide an overlap.
 //
 // All decisions are made in rational numbers. Preconditions of verify/exact.h.
 #pragma once
@@ -54,8 +54,8 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
 /// `unknown`.
 Overlap overlap_at(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
-/// True if the two objects are on different sides of a plane across an axis, or of the plane of a
-/// triangle of a contact.
+/// True if the two objects are on different sides of a plane perpendicular to an axis, or of the
+/// plane of a triangle of a contact.
 bool plane_divides(const Scene& scene, ObjectPair objects, std::span<const TrianglePair> contacts);
 
 }  // namespace farcull

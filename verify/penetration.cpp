@@ -1,6 +1,6 @@
 // The expanding polytope algorithm on all corners gives the first upper bound, along the direction
-// in which the hulls come apart soonest. Then comes the search. All this is in plain doubles; what
-// it finds is proved.
+// in which the shortest translation separates the hulls. Then the search improves both bounds. Both
+// compute in plain doubles, but the bounds are proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -39,7 +39,7 @@ class Polytope {
     std::array<std::uint32_t, 3> corners;
     Vec3 normal;      // of length 1, outward
     double distance;  // from the origin; negative if the origin is above the plane
-    bool final;       // true if no point of the differences is above it
+    bool final;       // true if no point of the differences is above the face
   };
 
   /// flat: a point up to this far above a plane, relative to the size, counts as in the plane.
@@ -125,8 +125,8 @@ class Polytope {
     return true;
   }
 
-  // Replaces the faces that see the point by faces to the point; does nothing if a new face would
-  // be flat.
+  // Replaces the faces that see the point by faces from their rim to the point. Does nothing if a
+  // new face would be degenerate.
   void add(const Vec3& point) {
     std::vector<std::array<std::uint32_t, 2>> edges;  // directed edges of faces that see the point
     std::vector<Face> kept;
@@ -141,7 +141,7 @@ class Polytope {
     std::vector<Face> before = std::exchange(faces_, std::move(kept));
     corners_.push_back(point);
     const auto last = static_cast<std::uint32_t>(corners_.size() - 1);
-    // Edges of two such faces cancel, so only the edges at the rim get a new face.
+    // The common edge of two removed faces cancels, so only edges at the rim get a new face.
     std::ranges::sort(edges);
     for (auto at = edges.begin(); at != edges.end();) {
       const auto [from, to] = *at;
@@ -170,18 +170,18 @@ class Polytope {
 struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
-    double distance;  // the translation t is held if normal . t < distance for all sides
+    double distance;  // a translation t is in the cover if normal . t < distance for all sides
     double error;     // largest error of normal . t - distance, relative to the magnitudes
     Vec3 support;     // |normal . axis| for each axis of boxes
   };
   std::vector<Side> sides;
-  double largest = 0;  // |coordinate| of a corner
+  double largest = 0;  // the largest |coordinate| of the corners
 };
 
-// Roundings. A component of a normal e x f has 4, relative to products of components of e and f.
-// When the normal is divided by its length, so is this error: `thin` is the quotient. Products with
-// a translation and with a corner, the corner's own rounding, sums and axes have 24 more, relative
-// to 1. The factor 40 covers all of them.
+// Roundings. A component of a normal e x f has 4 roundings, relative to products of components of e
+// and f. Dividing the normal by its length divides this error as well; `thin` is the quotient.
+// Products with a translation and with a corner, the corner's own rounding, sums and axes have 24
+// more, relative to 1. The factor 40 covers all of them.
 Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   Cover out;
   const Points& at = polytope.corners();
@@ -196,8 +196,7 @@ Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   return out;
 }
 
-/// Returns the distance from the origin along the ray up to which the covers hold the ray, in plain
-/// doubles.
+/// Returns how far a ray from the origin stays inside the covers, in plain doubles.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   std::vector<std::array<double, 2>> parts;  // the part of the ray in each cover
   for (const Cover& cover : covers) {
@@ -287,7 +286,7 @@ class Search {
     const double least = 1e-7 * out_.hi;
     while (!parts.empty()) {
       const Part part = parts.top();
-      // The axes are perpendicular except for rounding.
+      // The factor covers rounding errors of the axes, which are not exactly perpendicular.
       out_.lo = std::max(out_.lo, std::min(part.distance * (1 - 1e-12), out_.hi));
       if (out_.lo >= kClose * out_.hi || work_ > kWork) return;
       parts.pop();
@@ -311,7 +310,7 @@ class Search {
  private:
   struct Part {
     double distance;    // distance from the origin to the nearest point of the part
-    Vec3 middle, half;  // of the part's box, along the axes
+    Vec3 middle, half;  // middle and half lengths of the part's box
     bool operator>(const Part& other) const { return distance > other.distance; }
   };
 
@@ -326,8 +325,8 @@ class Search {
     });
   }
 
-  /// Returns the axis along which the part extends beyond the cover that holds most of it; -1 if a
-  /// cover holds all of the part.
+  /// Returns the axis along which the part extends beyond the cover that contains most of the part;
+  /// -1 if a cover contains all of it.
   int axis_to_divide(const Part& part) {
     const Vec3 middle = point_at(part.middle);
     const double reach = middle.cwiseAbs().maxCoeff() + part.half.sum();
@@ -358,7 +357,7 @@ class Search {
   std::vector<Cover> covers_;
   std::array<Vec3, 3> axes_;
   Penetration& out_;
-  int failures_;     // this many failures are still allowed
+  int failures_;     // this many failed translations are still allowed
   double room_ = 0;  // bound of rounding errors and of the shrinking of cores
   double work_ = 0;
 };
@@ -380,9 +379,9 @@ void bound_by_hulls(const ClosedObject& a, const ClosedObject& b, Penetration& o
   }
 }
 
-/// Tries translations of the length limit.most along limit.ways, forwards and backwards. While one
-/// separates the objects, notes it and tries a quarter of its length. Ends when out.hi <=
-/// limit.most.
+/// Tries translations of the length limit.most along limit.ways, forwards and backwards. If a
+/// translation separates the objects, stores it in `out` and tries a quarter of its length. Ends
+/// when out.hi <= limit.most.
 void bound_by_ways(const ClosedObject& a, const ClosedObject& b, const DepthLimit& limit,
                    Penetration& out) {
   for (const Vec3& way : limit.ways) {
@@ -452,8 +451,8 @@ bool has_normal_products(const ClosedObject& solid) {
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads, const std::optional<DepthLimit>& limit) {
-  // Work for each pair of objects. Larger objects get fewer cores, so that the time is about that
-  // of finding their pairs of triangles.
+  // Limits of the work for two objects. Larger objects get fewer cores, so that this takes about as
+  // long as finding their pairs of triangles.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
   const std::size_t most_cores = small ? 48 : 10, most_pairs = small ? 256 : 64;
   const int steps = small ? 200 : 60;

@@ -2,12 +2,12 @@
 // translation of one object after which the insides have no point in common (Cameron and Culley,
 // Determining the Minimum Translational Distance Between Two Convex Polyhedra, 1986).
 //
-// Upper bound: a translation after which the insides are certainly apart (separates()).
+// Upper bound: the length of a translation that is proved to separate the insides (separates()).
 //
 // Lower bound: from cores (verify/convex_core.h). Let A be a core of a and B a core of b. The
 // objects overlap after each translation in the polytope of the differences B - A. A search divides
 // the ball of translations shorter than the upper bound into boxes. A box is settled if one
-// polytope holds the box. The depth is at least the distance of the nearest box that is not
+// polytope contains the box. The depth is at least the distance of the nearest box that is not
 // settled. As the boxes become smaller, their middles are tried as translations.
 //
 // The expanding polytope algorithm (van den Bergen, Proximity Queries and Penetration Depth
@@ -33,7 +33,8 @@ struct Penetration {
 };
 
 /// A question that needs no tight bounds: is the depth at most `most` (above 0, finite)? ways: unit
-/// vectors along which a translation by `most` may separate, such as normals of faces that meet.
+/// vectors along which a translation by `most` may separate, for example normals of faces that
+/// meet.
 struct DepthLimit {
   double most = 0;
   std::span<const Vec3> ways = {};

@@ -1,6 +1,6 @@
 // Exact arithmetic for checks of rounded geometry. A double or float converts to a rational
-// exactly, so a claimed bound is decided, not estimated. Also random numbers that are the same on
-// every machine.
+// exactly, so a claimed bound is decided, not estimated. Also has random numbers that are the same
+// on every machine.
 #pragma once
 
 #include <gmpxx.h>

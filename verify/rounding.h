@@ -8,8 +8,8 @@ namespace farcull {
 
 enum class Triage : std::uint8_t { no, yes, unknown };
 
-/// The proved bounds (docs/proofs.md). They are a type, so that tests can show that smaller bounds
-/// give wrong answers.
+/// The proved bounds (docs/proofs.md). They are members of a type, so that tests can pass another
+/// type and show that smaller bounds give wrong answers.
 struct FilterBounds {
   /// Error of a determinant or of a projection, relative to the permanent (the sum of magnitudes).
   static constexpr double side = 9 * 0x1p-53;
@@ -19,7 +19,7 @@ struct FilterBounds {
   static constexpr double point = 64 * 0x1p-53;
   /// Error of a gap along a direction, relative to the projected magnitudes.
   static constexpr double gap = 16 * 0x1p-53;
-  /// Error by underflow, to be multiplied by 1 + the sum of the last factors.
+  /// Error by underflow of products, to be multiplied by 1 + the sum of their last factors.
   static constexpr double absolute = 0x1p-1000;
 };
 
@@ -27,7 +27,7 @@ struct FilterBounds {
 /// the sum of the normal's magnitudes. kNormalRounding: rounding of the bound.
 constexpr double kNormalLength = 0x1p-50;
 constexpr double kNormalRounding = 0x1p-49;
-/// Smaller squares of lengths have inaccurate roots, so this replaces them.
+/// Smaller squared lengths have inaccurate roots, so they are replaced by this value.
 constexpr double kLeastSquare = 0x1p-900;
 /// Rounding error of a clearance times a length, relative to the product.
 constexpr double kNeededRounding = 0x1p-50;
@@ -38,7 +38,7 @@ constexpr double kNeededRounding = 0x1p-50;
 constexpr double kTie = 8 * 0x1p-53;
 /// Error from the rounding of the two points of w, relative to the magnitudes of their coordinates.
 constexpr double kTiePoints = 2 * 0x1p-53;
-/// The error of kTiePoints if a coordinate is subnormal.
+/// Error from the rounding of the two points if a coordinate is subnormal.
 constexpr double kTieSubnormal = 0x1p-1070;
 /// Error by underflow of products.
 constexpr double kTieAbsolute = 0x1p-1000;

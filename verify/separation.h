@@ -1,5 +1,5 @@
 // Tests in doubles whether boxes or triangles are farther apart than a limit, for the accounting of
-// distances. Each test is true only if this is proved with all roundings.
+// distances. Each test is true only if bounds of all roundings prove this.
 //
 // u = 2^-53 is the unit roundoff. Sums and differences of doubles have a relative error of at most
 // u, even if the result is subnormal. Products and quotients have a relative error of at most u,
@@ -22,10 +22,10 @@ using Bounds = BoundsTree::Bounds;
 /// True only if all points of the two boxes are farther apart than `limit` (>= 0, finite).
 ///
 /// A gap along an axis is one rounded difference. Rounding is monotone, so a gap above the limit is
-/// proved. The sum of squares has three differences (each factor 1 + u, squared), three products
-/// and two sums. The root has one rounding. The relative error is below 8 u in all if the squares
-/// are normal numbers. The root is used only if nothing overflows, and if it is so large that the
-/// loss to subnormal squares is far below u of the root.
+/// proved. The sum of squares has three squared differences (each off by a factor (1 + u)^2), three
+/// products and two sums. The root has one rounding. The relative error is below 8 u in all if the
+/// squares are normal numbers. The root is used only if nothing overflows, and if it is so large
+/// that the loss to subnormal squares is far below u of the root.
 inline bool farther(const Bounds& a, const Bounds& b, double limit) {
   double squares = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -118,7 +118,7 @@ namespace farcull::minkowski_line {
 // Let the line be at c in the image, and d = c - m. The ball about a point p of the triangle cuts
 // the line in the chord from m.z + p.z - root to m.z + p.z + root, root = sqrt(r^2 - |d - p.xy|^2).
 // The solid's interval is the hull of all chords, so a kernel's answer has to contain the chord of
-// every p. Long doubles decide this; rationals decide where they leave a doubt.
+// every p. Long doubles decide this for most points, and rationals for the other points.
 
 using rational::Q;
 using Real = long double;
@@ -168,7 +168,7 @@ class Line {
   }
 
   /// Returns the chord of a point. The error bound is 2^-56 of the largest coordinates (flat: in
-  /// the image, deep: along the depth), since each of a dozen operations errs by 2^-64 of them.
+  /// the image, deep: along the depth), since each of a dozen operations is off by 2^-64 of them.
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -229,7 +229,7 @@ class Line {
     return found;
   }
 
-  /// Returns the distance in the image from the line to the triangle; 0 if the line is inside.
+  /// Returns the distance in the image from the line to the triangle; 0 if inside.
   Real distance() const {
     Real nearest = HUGE_VALL;
     int turns[3];
@@ -260,7 +260,8 @@ inline Answer answer(Kernel kernel, float cx, float cy, const Solid& solid) {
   return a;
 }
 
-/// True if the chord of p, cut by zlo and zhi, extends beyond the answer. Nothing is rounded.
+/// True if the chord of the point with weights w, cut by zlo and zhi, extends beyond the answer.
+/// Nothing is rounded.
 inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const Answer& answer) {
   const auto rational = [](Real x) {
     const double high = static_cast<double>(x);
@@ -274,7 +275,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
   }
   const Q x = Q(cx) - p[0], y = Q(cy) - p[1], square = r * r - x * x - y * y;
   if (square < 0) return false;
-  // Depths of the solid: the chord's middle, and those cuts that are in the chord.
+  // Depths that the solid may have: the chord's middle and the two cuts.
   const Q* const depths[] = {&p[2], &zlo, &zhi};
   for (const Q* z : depths) {
     const Q off = *z - p[2];
@@ -307,7 +308,6 @@ struct Tally {
   long checks = 0, rationals = 0, violations = 0;
 };
 
-/// Checks an answer against the chord of one point.
 inline void check(const Line& line, const Solid& s, float cx, float cy, const Weights& w,
                   const Answer& a, Tally& tally) {
   ++tally.checks;

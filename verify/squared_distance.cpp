@@ -51,8 +51,8 @@ double rounded(const mpz_class& m, long exponent) {
   const long last = std::max(bits_of(magnitude) + exponent - kDigits, kLeastExponent);
   const long drop = last - exponent;
   if (drop > 0) {
-    // Adds half of the last kept bit, and cuts off the sum. Of two equally near numbers the even
-    // number is kept.
+    // Adds half of the last kept bit, and cuts off the sum. If two numbers are equally near, the
+    // even one is kept.
     const auto k = static_cast<mp_bitcnt_t>(drop);
     const bool middle = mpz_scan1(magnitude.get_mpz_t(), 0) == k - 1;
     mpz_class sum = magnitude + shifted(1, drop - 1);

@@ -14,7 +14,7 @@
 
 namespace farcull {
 
-/// num / den times 2^exponent. Not in lowest terms, which take time and only text() needs.
+/// num / den times 2^exponent. Not in lowest terms: reducing takes time, and only text() needs it.
 struct SquaredDistance::Value {
   mpz_class num = 0;  // >= 0
   mpz_class den = 1;  // > 0
@@ -53,7 +53,7 @@ inline int lowest_bit(double x) {
   return exponent - 53 + __builtin_ctzll(static_cast<std::uint64_t>(digits));
 }
 
-/// Returns x times 2^-exponent. Precondition: the product is an integer.
+/// Returns x times 2^-exponent. Precondition: this is an integer.
 inline mpz_class integer_of(double x, int exponent) {
   const double whole = std::ldexp(x, -exponent);
   if (std::isfinite(whole)) return mpz_class(whole);

@@ -1,14 +1,14 @@
-// Numbers with about 106 bits, each with a bound of its error, and the test whether such a number
-// is known well enough to round it (Dekker, A Floating-Point Technique for Extending the Available
-// Precision, 1971; Ziv, Fast Evaluation of Elementary Mathematical Functions with Correctly Rounded
-// Last Bit, 1991). Only verify/contact_points.cpp uses this file.
+// Numbers with about 106 bits, each with a bound of its error. A test tells whether the bound is
+// small enough to round the number correctly (Dekker, A Floating-Point Technique for Extending the
+// Available Precision, 1971; Ziv, Fast Evaluation of Elementary Mathematical Functions with
+// Correctly Rounded Last Bit, 1991). Only verify/contact_points.cpp uses this file.
 //
 // u = 2^-53. Products, quotients and sums are rounded to nearest, so each is off by at most u times
 // the result. exact_sum() and exact_product() also give the part that rounding cuts off. If no such
 // part is dropped, as for coordinates of few digits, the error is 0.
 //
-// A bound is a sum of terms >= 0 that goes through at most 12 roundings. So the computed bound is
-// at least (1 - u)^12 times the exact bound. Bounds::factor makes up for this, and for a factor
+// A bound is a sum of terms >= 0 that has at most 12 roundings. So the computed bound is at least
+// (1 - u)^12 times the exact bound. Bounds::factor makes up for this, and for a factor
 // 1 + u, since |hi + lo| <= (1 + u) |hi|.
 //
 // Underflow. Precondition: each number at the start is the sum of two doubles, each 0 or of a
@@ -26,8 +26,8 @@
 
 namespace farcull::wide {
 
-/// Each bound is multiplied by this factor last. It is in a type, so that tests can show that
-/// smaller bounds give wrong answers.
+/// Each bound is multiplied by this factor last. The factor is in a type, so that tests can show
+/// that smaller bounds give wrong answers.
 struct Bounds {
   static constexpr double factor = 1 + 0x1p-48;
 };
@@ -108,7 +108,7 @@ Number<B> operator/(const Number<B>& a, const Number<B>& b) {
 
 /// Returns the double nearest to the number, never -0.0; empty if two doubles are possible.
 /// Rounding is monotone: if both ends of the number's interval are rounded to hi, so is the number.
-/// The sums with `error` are rounded, too, by at most u |lo| + u error; the larger error covers
+/// The sums with `error` are rounded, too, by at most u |lo| + u error; the enlarged `error` covers
 /// this.
 template <class B>
 std::optional<double> nearest(const Number<B>& x) {

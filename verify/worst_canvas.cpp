@@ -22,9 +22,9 @@ struct Range {
 };
 
 // Returns how far a window coordinate can be from the exact coordinate. A coordinate is multiplied
-// by 2/viewport, divided by w = 1, multiplied by viewport/2, added to the centre, then snapped. A1
-// bounds the error over the whole viewport. So every corner may be as far off as a corner at the
-// rim, which has the largest intermediate results.
+// by 2/viewport, divided by w = 1, multiplied by viewport/2, added to the centre, then snapped.
+// Assumption A1 bounds the error over the whole viewport. So every corner may be as far off as a
+// corner at the rim, which has the largest intermediate results.
 double displacement(int viewport, int subpixel_bits) {
   const double half = 0.5 * viewport;
   double x = half;
@@ -64,7 +64,6 @@ bool surely_beside(const float* a, const float* b, const Point& c, double orient
   return orientation * (left - right) > lost;
 }
 
-// Returns a hash of the word.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 31) * 0x9e3779b97f4a7c15u;
   x = (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
@@ -115,8 +114,8 @@ float WorstCanvas::held(float z) const {
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// Returns the value for a depth in the program that stores or asks (verb). Each rounding goes up or
-// down, to an end of the range that glsl_worst computes.
+// Returns the depth-buffer value of depth z in the program of `verb` (store or ask). Each rounding
+// goes to the lower or the upper end of the range that glsl_worst computes.
 float WorstCanvas::held(float z, Verb verb) const {
   if (options_.exact_samples) return held(z);
   const bool ask = verb == Verb::ask;
@@ -130,7 +129,7 @@ float WorstCanvas::held(float z, Verb verb) const {
   float depth = std::clamp(end(Worst(0.5f) + Worst(z) * Worst(depth_scale(window_))), 0.25f, 0.75f);
   if (ask) depth = end(Worst(depth) + Worst(options_.asked_behind));
   if (options_.depth_bits == 32) return depth;
-  constexpr double kMost = 0x1p24 - 1;  // OpenGL 4.6, 2.3.5.2: either neighbour of the product
+  constexpr double kMost = 0x1p24 - 1;  // OpenGL 4.6, 2.3.5.2: rounds up or down
   const double steps = depth * kMost;   // exact: at most 48 bits
   return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }

@@ -1,6 +1,6 @@
-// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more.
-// Of all results that the assumptions allow, it takes the worst result for culling. It models the
-// steps that a coordinate takes through a rasterizer. It does not know the budget's terms.
+// A canvas without a GPU that satisfies the device assumptions (docs/reliability.md). If the
+// assumptions allow several results, it takes the worst result for culling. It models the steps
+// that a coordinate takes through a rasterizer. It does not use the terms of the error budget.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,8 @@ struct WorstCanvasOptions {
   /// 32: depths are stored as computed floats. 24: depths are rounded to multiples of 2^-24.
   int depth_bits = 32;
   int max_resolution = 16370;
-  /// True: the canvas keeps the guarantees of core/native/canvas.h, and no more. Corners are not
-  /// moved, but the floats that compare a pixel centre with an edge are rounded as badly as IEEE
-  /// 754 allows.
+  /// True: the canvas gives only the guarantees of core/native/canvas.h. Corners are not moved, but
+  /// the floats that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
   bool exact_samples = false;
   /// An asked depth lies this far behind D(exit), the mapped exit depth, as on a GL device. Tests
   /// set less, to show that culling then misses pairs.
@@ -27,17 +26,17 @@ struct WorstCanvasOptions {
   std::uint64_t rounding_seed = 0;
 };
 
-/// How the canvas draws:
-/// - Proxies (A1 to A4). A pixel gets a fragment only if its centre is strictly inside the
-///   quadrilateral for every choice of corners that these roundings allow: the vertex stage, the
-///   division by w, the viewport transform and snapping.
-/// - The solid, by SolidProgram::interval_worst. A fragment is discarded if any rounding discards
-///   it. The entry is as late, and the exit as early, as any rounding makes them.
+/// How the canvas draws (A1 to A6 are the device assumptions):
+/// - Proxies (A1 to A4). The vertex stage, the division by w, the viewport transform and snapping
+///   round the corners of a quadrilateral. A pixel gets a fragment only if its centre is strictly
+///   inside the quadrilateral for all these roundings.
+/// - Solids (SolidProgram::interval_worst). A fragment is discarded if any rounding discards it.
+///   The entry is the latest, and the exit the earliest, over all roundings.
 /// - Depths (A4, A5). Storing and asking are two programs. Each program rounds the depths, and
 ///   converts them to 24 bits, in its own direction. With exact_samples both programs round to
-///   nearest, as the native canvas does. A query sees exactly what passes (A6).
+///   nearest, as the native canvas does. A query sees exactly the fragments that pass (A6).
 /// - Triangles (fixed depth) are sampled at pixel centres without displacement. Both programs round
-///   depths in the same direction. The assumptions promise nothing about triangles.
+///   depths in the same direction. The assumptions do not cover triangles.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});

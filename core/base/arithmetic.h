@@ -1,7 +1,7 @@
-// Refuses compilers whose floating-point arithmetic is not that of the proofs; CMakeLists.txt
+// Rejects compilers whose floating-point arithmetic does not match the proofs. CMakeLists.txt
 // includes this file first in every file of farcull. The proofs assume IEEE 754: every operation is
-// rounded once, to its own type, and infinities, NaNs, signed zeros and subnormals behave as IEEE
-// 754 says. core/base/floating_point.h checks how a thread computes at run time.
+// rounded once, to its own type, and infinities, NaNs, signed zeros and subnormals follow the
+// standard. core/base/floating_point.h checks the arithmetic of a thread at run time.
 #pragma once
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0) || \

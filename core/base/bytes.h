@@ -15,7 +15,7 @@ namespace farcull {
 
 /// Returns the bytes as Base64 (RFC 4648), padded, without line breaks.
 std::string to_base64(std::span<const std::uint8_t> bytes);
-/// Decodes the output of to_base64(). Returns empty if to_base64() cannot return `text`.
+/// Decodes Base64. Returns empty unless to_base64() can return `text`.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
 /// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
@@ -25,7 +25,7 @@ class Fnv1a {
   void add(std::string_view text) {
     for (const char c : text) add_byte(static_cast<unsigned char>(c));
   }
-  /// Adds the 8 bytes of the word, the lowest first.
+  /// Adds the 8 bytes of the word, the least significant byte first.
   void add(std::uint64_t word) {
     for (int byte = 0; byte < 8; ++byte, word >>= 8) add_byte(static_cast<unsigned char>(word));
   }

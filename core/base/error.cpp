@@ -1,4 +1,4 @@
-// Writes where, line, reason and remedy of an error in one sentence.
+// Writes the members of an Error in one sentence.
 #include "core/base/error.h"
 
 namespace farcull {
@@ -30,7 +30,7 @@ std::string spelled(const std::string& text) {
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
     const std::string word =
         is_parameter(name) && spelling_of_program ? spelling_of_program(name) : name;
-    if (!is_parameter(name) || word.empty()) {  // no parameter: keeps the character
+    if (!is_parameter(name) || word.empty()) {  // not a parameter: keeps the brace
       out += text[at++];
       continue;
     }

@@ -1,6 +1,6 @@
-// One exception type for all errors of the outside world (files, EGL, GL, disk, options). It says
-// what is wrong, where, and what to do. Mistakes of the programmer are assertions, not Errors. An
-// uncertain result is a value ("keep the pair"), not an Error.
+// One exception type for all errors of the environment (files, EGL, GL, disk, options). An Error
+// says what is wrong, where, and what to do. Programming mistakes are assertions. An uncertain
+// result is a value ("keep the pair"), not an Error.
 #pragma once
 
 #include <stdexcept>
@@ -10,8 +10,8 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// line: the line of a text file, counted from 1, or 0 for none. A text may name a parameter as
-  /// "{depth_format}" and a command as "{doctor}": the program shows them as its users write them.
+  /// line: line number in a text file, counted from 1; 0: none. The texts may name a parameter as
+  /// "{depth_format}" and a command as "{doctor}". The program replaces them by its own spelling.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device
@@ -22,12 +22,12 @@ class Error : public std::runtime_error {
 
 // ---- names of parameters ----
 
-/// Replaces each {parameter} in the text by the program's spelling of it, or by the bare name if
-/// the program has set no spelling.
+/// Replaces each {parameter} in the text by the program's spelling of its name. Without a spelling,
+/// the name stays without braces.
 std::string spelled(const std::string& text);
-/// Sets how the program spells a parameter's name, such as --depth-format on a command line. If a
-/// name is no parameter, `spelling` returns an empty text, and spelled() keeps the braces, as in a
-/// file name a{b}.obj. Call this before any other thread runs.
+/// Sets how the program spells the name of a parameter, such as --depth-format on a command line.
+/// `spelling` must return an empty text for a name that is no parameter. spelled() then keeps the
+/// braces, as in the file name a{b}.obj. Call this before any other thread runs.
 void spell_parameters(std::string (*spelling)(const std::string& name));
 
 }  // namespace farcull

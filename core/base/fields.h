@@ -1,14 +1,14 @@
-// The fields of a struct: its members with their names. Code that writes, adds up or compares the
-// members one by one uses this list, so a new member is added to one list only.
+// The fields of a struct: its members with their names, in one list. Code that writes, adds or
+// compares all members uses this list, so a new member is added only to the list.
 #pragma once
 
 #include <cstddef>
 #include <string_view>
 #include <tuple>
 
-/// Use inside a struct: makes these members its fields, with these names and in this order.
+/// Use inside a struct: declares these members as its fields, in this order. Example:
 ///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };
-/// Then sizes.fields(visit) calls visit("width", sizes.width), visit("height", sizes.height).
+/// sizes.fields(visit) then calls visit("width", sizes.width) and visit("height", sizes.height).
 #define FARCULL_FIELDS(...)                                                                     \
   static constexpr std::string_view kFieldNames = #__VA_ARGS__;                                 \
   auto members() const { return std::tie(__VA_ARGS__); }                                        \

@@ -1,7 +1,7 @@
-// Test operations find out how the thread computes. Their operands are volatile, so that no
-// compiler computes the results. <cfenv> sets and restores the environment. In C libraries fenv_t
-// includes whether results are flushed to zero, and FE_DFL_ENV turns flushing off. If a library
-// does otherwise, FloatingPointGuard notices it, because it repeats the test operations.
+// Test operations show how the thread computes. Their operands are volatile, so that no compiler
+// computes the results. <cfenv> sets and restores the environment. In C libraries fenv_t includes
+// the flush-to-zero mode, and FE_DFL_ENV turns this mode off. FloatingPointGuard repeats the test
+// operations, so it notices a library that behaves differently.
 #include "core/base/floating_point.h"
 
 #include <array>
@@ -19,9 +19,9 @@ static_assert(0.1 != 0.1f, "farcull: -fsingle-precision-constant breaks its proo
 
 thread_local std::optional<FloatingPoint> callers;
 
-// Let u be the distance from 1 to the next number. To nearest, 1 + u/4 is rounded to 1, -1 - u/4 to
-// -1, and 1 + 3u/4 to 1 + u. `above` and `below` identify upward and downward. `far` distinguishes
-// to nearest from toward zero.
+// Let u be the distance from 1 to the next larger number. Rounding to nearest gives 1 for 1 + u/4,
+// -1 for -1 - u/4, and 1 + u for 1 + 3u/4. `above` and `below` identify rounding upward and
+// downward. `far` distinguishes rounding to nearest from rounding toward zero.
 template <class Real>
 Rounding rounding() {
   constexpr Real kUnit = std::numeric_limits<Real>::epsilon();
@@ -37,9 +37,9 @@ Rounding rounding() {
   return Rounding::unknown;
 }
 
-// Two products show flushing. The first has normal operands and a subnormal result, the second a
-// subnormal operand and a normal result. The bits of the first result are examined, because a
-// comparison of floats might flush this result as an operand.
+// Two products reveal flushing. The first has normal operands and a subnormal result. The second
+// has a subnormal operand and a normal result. The bits of the first result are examined, because a
+// comparison of floats might flush it.
 template <class Real>
 void find_flushing(FloatingPoint& found) {
   using Limits = std::numeric_limits<Real>;
@@ -88,7 +88,7 @@ void require_proved(const std::string& where) {
 }
 
 FloatingPointGuard::FloatingPointGuard() {
-  std::feholdexcept(&before_);  // turns traps off before any arithmetic
+  std::feholdexcept(&before_);  // also turns traps off, before any arithmetic
   const FloatingPoint found = floating_point();
   std::fesetenv(FE_DFL_ENV);
   try {

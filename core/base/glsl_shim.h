@@ -1,8 +1,8 @@
 // Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
-// A kernel writes FAR_OUT(t) and FAR_INOUT(t) for its parameters, FAR_PRECISE before a float whose
-// computation no compiler may reassociate, and FAR_KERNEL before a function that several files may
-// compile. Contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
-// operation once.
+// Kernels write output parameters as FAR_OUT(t) and FAR_INOUT(t). FAR_PRECISE marks a float whose
+// computation must not be reassociated. FAR_KERNEL marks a function that several files may compile.
+// Contraction is off in all of farcull (CMakeLists.txt), so every operation is rounded once in both
+// languages.
 #pragma once
 
 #include <cmath>
@@ -29,9 +29,9 @@ inline float fixed(float a) { return a; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
-// Kernels use these macros in place of bool, ?: and global constants, because a value may be a
-// vector with one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c) wraps the condition
-// c of an `if`. The condition must be the same for all lanes.
+// Kernels use these macros instead of bool, ?: and global constants, because a value may be a
+// vector with one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c) is the condition of
+// an `if`; c must be the same for all lanes.
 #define FAR_CONSTANT const float
 #define FAR_BOOL bool
 #define FAR_SELECT(c, a, b) ((c) ? (a) : (b))

@@ -1,10 +1,10 @@
-// Imitates a device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as
-// C++. A Worst replaces a float. It is the range of all floats that some permitted rounding could
-// give (GLSL 4.50, section 4.7.1; assumption A4). Sums, differences and products are rounded in any
-// direction. Quotients err by 2.5 units in the last place, square roots by 5 (as 1 / inversesqrt).
-// Operands and results below 2^-126 may be flushed to zero. A comparison is true only if it is true
-// for all floats of the ranges. Include the kernel between `#define float Worst` and `#undef
-// float`, after all other headers.
+// Simulates a device whose arithmetic is as inaccurate as GLSL allows, for kernels (*.glsl)
+// compiled as C++. A Worst replaces a float. It is the range of all floats that permitted rounding
+// could give (GLSL 4.50, section 4.7.1; assumption A4). Sums, differences and products may be
+// rounded in any direction. Quotients err by 2.5 units in the last place, and square roots by 5 (as
+// 1 / inversesqrt). Operands and results below 2^-126 may be flushed to zero. A comparison is true
+// only if it is true for all floats of both ranges. Include a kernel after all headers, between
+// `#define float Worst` and `#undef float`.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class Worst {
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
-  /// Returns one float of the range. Use it for a value that a kernel may choose freely.
+  /// Returns one float of the range, for a value that a kernel may choose freely.
   friend Worst fixed(Worst a) {
     return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_)));
   }
@@ -69,8 +69,8 @@ class Worst {
     return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
   }
 
-  // Widens [lo, hi] by `units` in the last place. Returns the smallest range of floats around the
-  // result. If `units` is 0, a bound that is a float stays exact, unless it is flushed to zero.
+  // Widens [lo, hi] by `units` in the last place. Returns the smallest range of floats around it.
+  // If `units` is 0, a bound that is a float is unchanged, unless it is flushed to zero.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

@@ -1,4 +1,4 @@
-// A pool of threads, since starting a thread takes as long as a small step of a query.
+// A pool of threads. Starting a thread takes as long as a small step of a query.
 #include "core/base/parallel.h"
 
 #include <condition_variable>
@@ -15,10 +15,10 @@
 namespace farcull {
 namespace {
 
-// The stop flag of the StoppableCall that this thread works for; null if it works for none.
+// The stop flag of the StoppableCall that this thread works for; null if there is none.
 thread_local const std::atomic<bool>* stop_requested = nullptr;
 
-// While the object lives, the calling thread works for the StoppableCall with this stop flag.
+// While the object exists, the calling thread works for the StoppableCall with this stop flag.
 class WorksFor {
  public:
   explicit WorksFor(const std::atomic<bool>* request)
@@ -31,8 +31,8 @@ class WorksFor {
   const std::atomic<bool>* before_;
 };
 
-// A waiting thread spins this long before it sleeps. The next step of a query mostly comes sooner
-// than a sleeping thread would wake.
+// A waiting thread spins this long before it sleeps. Usually the next step of a query comes sooner
+// than a sleeping thread could wake up.
 constexpr std::chrono::microseconds kSpin{50};
 
 template <class Done>
@@ -49,8 +49,8 @@ bool spin_until(const Done& done) {
   return done();
 }
 
-// Blocks all signals in the calling thread while the object lives. A thread started meanwhile
-// blocks them always, so only threads of farcull's caller receive signals.
+// Blocks all signals in the calling thread while the object exists. A thread that is started
+// meanwhile blocks them forever, so only threads of farcull's caller receive signals.
 class SignalsBlocked {
  public:
 #ifndef _WIN32
@@ -68,14 +68,14 @@ class SignalsBlocked {
 #endif
 };
 
-// One call of run_parts(). It lives as long as the call does.
+// One call of run_parts(). Exists until the call returns.
 struct Batch {
   void (*part)(const void*, std::size_t);
   const void* data;
   std::size_t parts;
   const std::atomic<bool>* stop_request;  // the stop flag of the calling thread
-  std::size_t next = 0;                   // the next part to begin; guarded by the pool's mutex
-  std::atomic<std::size_t> done = 0;      // number of parts that have returned
+  std::size_t next = 0;                   // number of begun parts; guarded by the pool's mutex
+  std::atomic<std::size_t> done = 0;      // number of finished parts
 };
 
 class Pool {
@@ -102,12 +102,12 @@ class Pool {
   }
 
  private:
-  // Returns the next part of the batch that no thread has begun, or 0 if all have been begun.
+  // Returns a part of the batch that no thread has begun, or 0 if there is none.
   std::size_t claim_of(Batch& batch) {
     const std::lock_guard lock(mutex_);
     return batch.next < batch.parts ? claim(batch) : 0;
   }
-  // Preconditions: the caller holds the mutex, and a part of the batch has not been begun.
+  // Preconditions: the caller holds the mutex, and the batch has a part that is not begun.
   std::size_t claim(Batch& batch) {
     --waiting_;
     const std::size_t k = batch.next++;
@@ -115,7 +115,7 @@ class Pool {
     return k;
   }
 
-  // Starts threads until there are `count`, if the system allows. The caller holds the mutex.
+  // Starts threads until there are `count`, or until starting fails. The caller holds the mutex.
   void need_threads(std::size_t count) {
     const SignalsBlocked blocked;
     try {
@@ -124,7 +124,7 @@ class Pool {
         ++threads_;
       }
     } catch (const std::exception&) {
-      // The existing threads do the work. The caller is always one of them.
+      // The existing threads and the caller of run_parts() do the work.
     }
   }
 
@@ -141,7 +141,7 @@ class Pool {
         batch.part(batch.data, k);
       }
       lock.lock();
-      // Read before `done` grows: once all parts are done, run_parts() may destroy the batch.
+      // Reads `parts` before `done` grows: run_parts() may destroy the batch when all are done.
       const std::size_t parts = batch.parts;
       const bool last = batch.done.fetch_add(1) + 1 == parts;
       lock.unlock();
@@ -151,13 +151,13 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
-  std::deque<Batch*> batches_;            // batches with a part that no thread has begun
-  std::atomic<std::size_t> waiting_ = 0;  // parts that no thread has begun; changed under the mutex
+  std::deque<Batch*> batches_;            // batches with a part that is not begun
+  std::atomic<std::size_t> waiting_ = 0;  // parts that are not begun; changed under the mutex
   std::size_t threads_ = 0;
 };
 
-// The pool is never destroyed: its threads sleep until the process ends. A forked process has none
-// of these threads, so it makes a new pool.
+// Returns the pool. It is never destroyed: its threads sleep until the process ends. A forked
+// process has none of these threads, so it makes a new pool.
 Pool& pool() {
   static std::atomic<Pool*> current = [] {
 #ifndef _WIN32

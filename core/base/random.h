@@ -6,8 +6,8 @@
 
 namespace farcull {
 
-/// The finalizer of splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
-/// 2014): every bit of the result depends on every bit of x.
+/// The finalizer of splitmix64: every bit of the result depends on every bit of x (Steele, Lea,
+/// Flood: Fast splittable pseudorandom number generators, 2014).
 constexpr std::uint64_t scrambled(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -16,8 +16,8 @@ constexpr std::uint64_t scrambled(std::uint64_t x) {
 /// A constant for mixing bits: 2^64 divided by the golden ratio.
 constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
-/// Draws from std::mt19937_64, whose words are specified. The distributions of <random> differ
-/// between standard libraries, so the mappings below are our own.
+/// Random numbers from std::mt19937_64, whose output the C++ standard specifies. The distributions
+/// of <random> differ between standard libraries, so this class has its own mappings.
 class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : words_(seed) {}
@@ -28,7 +28,7 @@ class RandomNumbers {
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
   /// Returns -1 or 1.
   double sign() { return (word() & 1) != 0 ? 1 : -1; }
-  /// Returns a word modulo n, which is not quite uniform. Precondition: n >= 1.
+  /// Returns a word modulo n; the distribution is not exactly uniform. Precondition: n >= 1.
   template <class Integer>
   Integer below(Integer n) {
     return static_cast<Integer>(word() % static_cast<std::uint64_t>(n));

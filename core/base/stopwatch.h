@@ -1,4 +1,4 @@
-// Measures the wall-clock time since its construction, for the times of stages.
+// Measures the wall-clock time since the object was constructed, for the times of stages.
 #pragma once
 
 #include <chrono>

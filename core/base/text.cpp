@@ -1,4 +1,4 @@
-// Finds the likely word by edit distance. Learns about a terminal from POSIX or from Windows.
+// Finds likely words by edit distance. Gets properties of a terminal from POSIX or Windows.
 #include "core/base/text.h"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace farcull {
 namespace {
 
 // Returns the least number of edits that turn `a` into `b` (optimal string alignment).
-// likely_word() says what an edit is. apart[i][k]: edits from the first i letters of a to the first
-// k of b.
+// likely_word() in text.h defines an edit. apart[i][k]: edits from the first i letters of `a` to
+// the first k letters of `b`.
 std::size_t letters_apart(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> apart(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   const auto same = [&](std::size_t i, std::size_t k) {

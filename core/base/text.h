@@ -1,5 +1,5 @@
-// Reads numbers from text, writes numbers as people read them, guesses words that were misspelt,
-// and tells whether a stream is a terminal and how wide it is.
+// Reads numbers from text, formats numbers for people, and suggests corrections of misspelt words.
+// Also tells whether a stream is a terminal, and its width.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 
 namespace farcull {
 
-/// Removes the number at the beginning of `text` and returns it. The number is decimal, as
-/// std::from_chars reads it: no leading space and no '+'. Returns empty and leaves `text` unchanged
-/// if it begins with no number or T cannot hold the number.
+/// Removes the number at the beginning of `text` and returns it. The number is decimal, as in
+/// std::from_chars: no leading space and no '+'. Returns empty and leaves `text` unchanged if
+/// `text` begins with no number, or if T cannot hold the number.
 template <class T>
 std::optional<T> take_number(std::string_view& text) {
   T value{};
@@ -26,16 +26,16 @@ std::optional<T> take_number(std::string_view& text) {
   return value;
 }
 
-/// Parses the whole `text` as one number. Returns empty if `text` is anything else.
+/// Parses the whole `text` as one number. Returns empty if `text` is not a number.
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
   const std::optional<T> value = take_number<T>(text);
   return text.empty() ? value : std::nullopt;
 }
 
-/// Returns the word of `known` that `word` probably means, or empty. The result is at most two
-/// edits from `word`, ignoring case, and there are fewer edits than half the letters of `word`. An
-/// edit inserts, deletes or replaces a letter, or swaps two neighbouring letters.
+/// Returns the word in `known` that `word` probably means, or empty. The result is at most two
+/// edits from `word`, and fewer edits than half the letters of `word`. Case is ignored. An edit
+/// inserts, deletes or replaces a letter, or swaps two adjacent letters.
 std::string likely_word(const std::string& word, const std::vector<std::string>& known);
 /// Returns "did you mean NAME? ", or an empty text if the name is empty.
 inline std::string did_you_mean(const std::string& name) {
@@ -49,13 +49,13 @@ inline std::string grouped(std::uint64_t n) {
   return out;
 }
 
-/// Returns the shortest decimal text that reads back as the same double, whatever the locale.
+/// Returns the shortest decimal text that reads back as the same double, in any locale.
 inline std::string shortest(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// Returns the text as one line: replaces each control character by a blank.
+/// Returns the text as one line: each control character becomes a blank.
 inline std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < ' '; }, ' ');
@@ -70,7 +70,7 @@ inline std::string printable(std::string_view text, std::size_t most) {
   return text.size() > most ? out + "..." : out;
 }
 
-/// Returns the reason in a message of nlohmann-json, without a beginning such as
+/// Returns the reason in a message of nlohmann-json. Removes a beginning such as
 /// "[json.exception.parse_error.101] parse error at line 1, column 2: ".
 inline std::string_view json_fault(std::string_view message) {
   for (const std::string_view mark : {"] ", "column "}) {
@@ -83,16 +83,15 @@ inline std::string_view json_fault(std::string_view message) {
   return message;
 }
 
-/// Returns a number and the words that agree with it: "1 pair", "1,234 pairs", "1 triangle is
-/// left".
+/// Returns a number and the words for one or many, such as "1 pair" or "1,234 pairs".
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);
 }
 
-/// True if the stream is a terminal; false also if the stream is closed.
+/// Returns true if the stream is a terminal, and false if it is not or is closed.
 bool is_terminal(std::FILE* stream);
 
-/// Returns the columns of the stream's terminal, or 0 if it is no terminal or they are unknown.
+/// Returns the width of the stream's terminal in columns. 0: not a terminal, or unknown width.
 unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

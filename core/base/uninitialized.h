@@ -1,4 +1,4 @@
-// A vector of plain data whose resize() does not clear memory. Use it for arrays that are
+// A vector of plain data whose resize() does not initialize memory. Use it for arrays that are
 // completely written right after resize().
 #pragma once
 

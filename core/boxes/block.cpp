@@ -143,8 +143,8 @@ struct Spread {
   }
 };
 
-// Returns the spread of a sample, without an eighth of the sample at either end of each axis. So a
-// few distant boxes do not decide.
+// Returns the spread of a sample. On each axis, leaves out the lowest and the highest eighth of the
+// sample, so that a few distant boxes do not decide.
 Spread sampled_spread(std::span<const Placed> items) {
   constexpr std::size_t kMost = 32;
   const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
@@ -175,8 +175,7 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
     // Moves boxes that span the whole spread to the front, because such a box would enlarge either
-    // half. They are split off only if they are at most half of the items: the depth stays O(log
-    // n).
+    // half. Splits these boxes off if they are at most half of the items: the depth stays O(log n).
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;

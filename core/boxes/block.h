@@ -91,7 +91,7 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr FloatBox kNowhere = {{kInfinite, kInfinite, kInfinite, 0},
                                {-kInfinite, -kInfinite, -kInfinite, 0}};
 /// Returns the box relative to a finite origin, rounded to finite floats. Returns kNowhere for an
-/// empty box. No other result meets kNowhere.
+/// empty box. A finite box never meets kNowhere.
 FloatBox relative(const Box& box, const Vec3& origin);
 /// True iff the closed boxes share a point.
 inline bool overlap(const FloatBox& a, const FloatBox& b) {

@@ -89,7 +89,7 @@ struct Comparison {
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
     }
   }
-  // Returns a mask of b's boxes, from lane `from` on, that triangle `row` of a meets on its normal.
+  // Returns a mask of b's boxes, from lane `from` on, that meet triangle `row` along its normal.
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -186,7 +186,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last triangle. It meets nothing: its box is empty.
+    // A lane without a triangle repeats the last triangle. The lane's box in BlockLanes is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;

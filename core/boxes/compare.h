@@ -3,8 +3,8 @@
 //
 // The box of a large oblique triangle reaches far from the triangle's plane. Along its normal, the
 // triangle may be apart from small triangles in its box. Any direction may be compared: if two
-// triangles have a common point, their projections on it have one. Normals are computed in floats,
-// and a margin covers the rounding (docs/reliability.md, "Boxes of blocks").
+// triangles have a common point, their projections on the direction have one, too. Normals are
+// computed in floats, and a margin covers the rounding (docs/reliability.md, "Boxes of blocks").
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
 
 /// Pairs of triangles that a comparison finds, the smaller index first.
 struct BlockFindings {
-  std::vector<TrianglePair> pairs;    // their boxes overlap
-  std::vector<TrianglePair> perhaps;  // their boxes touch in floats; only doubles can decide
+  std::vector<TrianglePair> pairs;    // pairs whose boxes overlap
+  std::vector<TrianglePair> perhaps;  // pairs whose boxes touch in floats; doubles decide
 };
 /// Two arrays of lanes that are indexed as one: `first`, then `second`.
 struct LaneSpans {

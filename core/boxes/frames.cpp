@@ -105,7 +105,7 @@ std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned thre
 }  // namespace
 
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory) {
-  if (!memory.moved.any()) {  // everything is as before
+  if (!memory.moved.any()) {
     BlockDecision out = memory.counts;
     out.blocks.kept = memory.pairs;
     return out;

@@ -1,5 +1,5 @@
-// Results of boxes of blocks that are kept from one frame of a scene to the next, so that triangles
-// that did not move cost little.
+// Keeps results of boxes of blocks from one frame of a scene to the next, so that triangles that
+// did not move cost little.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ struct FrameMemory {
   bool oriented = false;  // `pairs` are from oriented boxes: usable only while nothing moves
   BlockDecision counts;   // the decision of the last frame; only its counts are set
 
-  /// Blocks of the last frame. They are shared with the plan of that frame. If they are null, the
-  /// members below are not used.
+  /// Blocks of the last frame. The plan of that frame shares them. If null, the members below are
+  /// not used.
   std::shared_ptr<TriangleBlocks> blocks;
   std::optional<BlockTrees> trees;      // a tree for each object
   std::vector<std::uint32_t> block_of;  // per triangle: its block
@@ -38,8 +38,8 @@ struct FrameMemory {
   std::size_t usual = 0;                // overlapping.size() when the blocks were made
 };
 
-/// Decides as decide_by_blocks(), for the frame after the one in `memory`. Preconditions:
-/// - memory.moved says what moved since the last frame.
+/// Decides as decide_by_blocks(), for the frame that follows the frame in `memory`. Preconditions:
+/// - memory.moved has the corners that moved since the last frame.
 /// - The clearance, neighbours and ignored objects are those of the last frame.
 /// - If anything moved, memory.oriented is false.
 BlockDecision decide_next_frame(const Scene& scene, unsigned threads, FrameMemory& memory);

@@ -55,8 +55,8 @@ HWY_EXPORT(find_leaves_here);
 namespace {
 
 // Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
-// one Memory, and `find` appends to memory.pairs. flush() gives memory.pairs to `take` if there are
-// many. The remaining pairs are given at the end. Returns the number of pairs given.
+// one Memory, and `find` appends to memory.pairs. flush() gives memory.pairs to `take` if the list
+// is long. The remaining pairs are given at the end. Returns the number of pairs given.
 template <class Memory, class Take, class Find>
 std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
                             const Take& take, const Find& find) {
@@ -86,7 +86,7 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
   return given;
 }
 
-// With fewer items than this, a second thread to find pairs costs more than it saves.
+// With fewer items than this, a second thread costs more time than it saves.
 constexpr std::size_t kLeast = 4096;
 // About this many pairs are found at a time, so that they stay in caches until they are copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
@@ -162,8 +162,8 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
   plant(std::move(own));
 }
 
-// Drops each item whose box overlaps no owner's box, except that of its own owner. Such an item has
-// no pair. An owner's box is the box around all its items. Precondition: are_few(owner_).
+// Drops each item whose box overlaps the box of no other owner. Such an item has no pair. An
+// owner's box is the box around all its items. Precondition: are_few(owner_).
 void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
   std::vector<Box> of_owner;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -352,7 +352,7 @@ void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint3
       children.push_back(leaf);
     }
     for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
-      std::size_t found = 0;  // number of their parents, which overwrite the front of `children`
+      std::size_t found = 0;  // number of parents; they overwrite the front of `children`
       for (const std::uint32_t child : children) {
         const std::uint32_t node = child / kWide;
         if (found > 0 && children[found - 1] == node) continue;

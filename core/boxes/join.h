@@ -28,32 +28,31 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> items,
                                    std::size_t most = SIZE_MAX, unsigned threads = 1);
 
-/// Returns owners for box_join() with which it also finds pairs inside objects marked `self`: each
-/// triangle of such an object is its own owner.
+/// Returns owners for box_join() that let box_join() also find pairs inside objects marked `self`:
+/// each triangle of such an object is its own owner.
 std::vector<std::uint32_t> join_owners(const Scene& scene);
 
 /// A function that receives pairs: some thousands in each call, in no order. Several threads may
-/// call it at once. It may change the list.
+/// call it at once. The function may change the list.
 using TakePairs = std::function<void(std::vector<TrianglePair>& some)>;
 
 /// Finds, in ascending order, all pairs a < b with different owners and overlapping closed boxes.
 class OrderedPairs {
  public:
-  /// The items are triangles. Finds pairs of different objects, and pairs inside objects marked
-  /// `self`. Boxes are grown by half the clearance, so every two triangles that are at most the
-  /// clearance apart are a pair (core/boxes/block.h).
-  /// clearance: world units, finite, >= 0. ignored: pairs of objects whose triangles are not
-  /// paired, as in_order() gives them. neighbours: false leaves out pairs of one object that share
-  /// a vertex index. threads: 0 for as many as there are cores; changes no answer. Memory O(items).
-  /// The scene must outlive this object.
+  /// Finds pairs of triangles of different objects, and pairs inside objects marked `self`. Boxes
+  /// are grown by half the clearance, so every two triangles at most the clearance apart are a pair
+  /// (core/boxes/block.h). clearance: world units, finite, >= 0. ignored: pairs of objects whose
+  /// triangles are not paired; a result of in_order(). neighbours: false leaves out pairs of one
+  /// object that share a vertex index. threads: 0 for as many as there are cores; changes no
+  /// answer. Memory O(items). The scene must outlive this object.
   OrderedPairs(const Scene& scene, double clearance, std::span<const ObjectPair> ignored,
                bool neighbours, unsigned threads);
-  /// Finds pairs of `items`, as box_join(). Copies the boxes and owners.
+  /// Finds the same pairs of `items` as box_join(). Copies the boxes and owners.
   OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                std::span<const std::uint32_t> items, unsigned threads);
 
-  /// Sets `out` to about the next `most` pairs, fewer at the end. `out` may exceed `most` by all
-  /// pairs of one item for each thread, and may be empty before the end. Precondition: most > 0.
+  /// Sets `out` to about the next `most` pairs, fewer at the end. For each thread, `out` may exceed
+  /// `most` by all pairs of one item. `out` may be empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == items_.size(); }
   /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. If
@@ -82,10 +81,10 @@ class OrderedPairs {
     std::vector<std::uint64_t> marks;
   };
   void append(std::uint32_t a, Part& part) const;  // appends the pairs of item a, in order
-  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // appends its pairs with later leaves
+  void append_of_leaf(std::uint32_t leaf, Part& part) const;  // appends pairs with later leaves
   void find(std::uint32_t leaf, std::uint32_t least, Part& part) const;
   std::uint32_t first_of_later_owners(std::uint32_t item) const;
-  bool is_asked(const TrianglePair& pair) const;  // false: ignored, or neighbours left out
+  bool is_asked(const TrianglePair& pair) const;  // false: leave out the pair
 
   void plant(std::vector<Box> boxes);  // makes the tree over the boxes of the items
   void drop_apart(std::vector<Box>& boxes);
@@ -134,9 +133,9 @@ struct BlockPair {
   auto operator<=>(const BlockPair&) const = default;
 };
 
-/// Appends each pair of a block in from .. to - 1 (of object a) and a block of object b, if their
-/// boxes overlap. If a == b and `twice` is false, appends only pairs (s, t) with s <= t. Stops when
-/// `out` has more than `most` pairs.
+/// Compares the blocks from .. to - 1 of object a with the blocks of object b. Appends the pairs
+/// whose boxes overlap. If a == b and `twice` is false, appends only pairs (s, t) with s <= t.
+/// Stops when `out` has more than `most` pairs.
 void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
                  std::uint32_t to, std::size_t most, std::vector<BlockPair>& out,
                  bool twice = false);
@@ -167,11 +166,11 @@ struct BlockMeetings {
   bool empty() const { return meetings == 0; }
 };
 
-/// Gives to `take` all pairs a < b of triangles whose boxes overlap and whose blocks are one of
+/// Gives to `take` all pairs a < b of triangles whose boxes overlap and whose blocks are a pair in
 /// `pairs`. Returns the number of pairs given. No pair is given twice, unless a pair of blocks is
-/// listed twice. along_normals: true leaves out pairs in which the normal of one triangle separates
-/// it from the box of the other. neighbours: false leaves out pairs of one object that share a
-/// vertex index. If `take` throws, the exception is thrown again here, and some pairs were not
+/// listed twice. along_normals: true leaves out a pair if the normal of one triangle separates that
+/// triangle from the box of the other. neighbours: false leaves out pairs of one object that share
+/// a vertex index. If `take` throws, the exception is thrown again here, and some pairs were not
 /// given.
 std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
                                  const BlockPairs& pairs, bool along_normals, double clearance,

@@ -125,9 +125,9 @@ HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   return bit;
 }
 
-/// Searches the tree and calls visit(leaf) for leaves >= `least`, in an order that the tree fixes.
-/// bits_of_block(k) returns bits: the search goes on only to these children in block k. Returns how
-/// many blocks were examined.
+/// Calls visit(leaf) for the leaves >= `least` that a search of the tree reaches, in a fixed order.
+/// bits_of_block(k) returns a bit for each child in block k that is searched. Returns how many
+/// blocks were examined.
 template <class Number, class Bits, class Visit>
 HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t least,
                                     const Bits& bits_of_block, const Visit& visit) {
@@ -160,7 +160,8 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
   return compared;
 }
 
-/// Calls visit(leaf) for leaves >= `least` whose boxes overlap `box`. Returns as for_leaves().
+/// Calls visit(leaf) for leaves >= `least` that overlap `box`. Returns how many blocks were
+/// compared.
 template <class Number, class Visit>
 HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
                                                 const WideBoxes<Number>* blocks,

@@ -1,4 +1,4 @@
-// Joins the boxes of objects, then those of the blocks of objects that meet.
+// Finds objects whose boxes overlap, then the overlapping boxes of these objects' blocks.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>
@@ -84,7 +84,7 @@ enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 // Finds the pairs of blocks of each part. Gives up a meeting with more pairs than its limit. Gives
 // up all meetings if the scene has more pairs than its limit. A meeting that is given up counts as
 // its limit + 1 pairs, so that the answer does not depend on threads. find(meeting, part, most)
-// appends pairs to the part, as pair_blocks().
+// appends pairs to the part as pair_blocks() does.
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
@@ -95,7 +95,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> given_up = false;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    MeetingPart scratch;  // pairs are copied from it, so that a part holds no unused memory
+    MeetingPart scratch;  // pairs are copied from here, so that a part holds no unused memory
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
       const ObjectOverlap& meeting = meetings[part.meeting];
@@ -122,7 +122,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
 
 // Oriented boxes are used if, in a sample, they leave at most this many pairs per triangle.
 constexpr double kOrientedPerTriangle = 64;
-// Normals are compared under three conditions, in a sample. Boxes along the axes leave more than
+// Normals are compared if a sample meets three conditions. Boxes along the axes leave more than
 // kFewOverlaps pairs per triangle. Normals leave at most kMostLeft pairs per triangle. Normals
 // leave at most 1 / kLeastDrop of the pairs that boxes leave. Per triangle, normals cost about as
 // much as deciding two pairs exactly, and oriented boxes as much as deciding ten.
@@ -193,14 +193,13 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 }
 
 double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance) {
-  constexpr std::size_t kSampled = 64;  // pairs of blocks
+  constexpr std::size_t kSampled = 64;  // evenly spaced pairs of blocks
   const std::size_t all = meetings.pairs.size();
   if (all == 0) return 0;
   BlockPairs some;
   for (const auto list : {&BlockPairs::between, &BlockPairs::inside}) {
     const std::vector<BlockPair>& pairs = meetings.pairs.*list;
-    const std::size_t count =
-        std::min((kSampled * pairs.size() + all - 1) / all, pairs.size());  // evenly spaced
+    const std::size_t count = std::min((kSampled * pairs.size() + all - 1) / all, pairs.size());
     for (std::size_t k = 0; k < count; ++k) (some.*list).push_back(pairs[pairs.size() * k / count]);
   }
   const std::uint64_t found =

@@ -1,4 +1,4 @@
-// Which objects of a scene can meet, and whether boxes of blocks of their triangles find the pairs.
+// Finds objects that can meet, and decides if boxes of blocks find the pairs of triangles.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct ObjectOverlaps {
   bool crowded = false;     // `all` is empty: more than 8 pairs of objects per block overlap, and a
                             // list of these pairs would take more memory than the scene
 };
-/// ignored: pairs of objects that are not tested against each other, as in_order() gives them.
+/// ignored: pairs of objects that are not tested against each other; a result of in_order().
 ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,
                              std::span<const ObjectPair> ignored);
 
@@ -39,10 +39,10 @@ std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
                                    std::span<const ObjectOverlap> meetings);
 
 /// The limit for each meeting: overlapping pairs of blocks, divided by the number of blocks in
-/// these pairs. If a meeting exceeds it, boxes of blocks along the axes are not used.
+/// these pairs. If a meeting exceeds the limit, boxes of blocks along the axes are not used.
 constexpr std::size_t kPairsPerBlock = 32;
-/// Oriented boxes of blocks are tried if a sample has more than this many overlapping pairs of
-/// triangles' boxes per triangle, without neighbours. Oblique slivers have so many.
+/// Oriented boxes of blocks are tried if, in a sample, more than this many pairs of triangles'
+/// boxes overlap per triangle, as for oblique slivers. Pairs of neighbours are not counted.
 constexpr double kOverlapsPerTriangle = 16;
 /// Oriented boxes are not tried if the scene has more than this many overlapping pairs of blocks
 /// per block.
@@ -53,7 +53,7 @@ constexpr std::size_t kMostPairsPerBlock = 1024;
 struct BlockDecision {
   BlockMeetings blocks;               // empty if nothing can meet, or if a tree decides
   Reason tree = Reason::none;         // why a tree decides; none: blocks decide
-  std::uint64_t tree_n = 0;           // the number that the words of `tree` name
+  std::uint64_t tree_n = 0;           // the number in the text of `tree`
   std::uint64_t pairs = 0, self = 0;  // as in ObjectOverlaps
 };
 
@@ -61,11 +61,11 @@ struct BlockDecision {
 /// rule that fits decides:
 /// 1. A tree, if too many objects meet to list the meetings, or if an object is stretched beyond
 ///    kUneven (core/boxes/triangle_blocks.h).
-/// 2. Blocks with boxes along the axes, if few of these boxes overlap. Their triangles are compared
-///    along normals as well if that drops most pairs of a sample.
-/// 3. Blocks with oriented boxes, if few of these overlap in a sample.
-/// 4. A tree.
-/// threads: 0 for as many as there are cores; changes no answer. ignored: as find_meetings().
+/// 2. Blocks with boxes along the axes, if few of these boxes overlap. Triangles are also compared
+///    along normals if this drops most pairs of a sample.
+/// 3. Blocks with oriented boxes, if few of these boxes overlap in a sample.
+/// 4. A tree. threads: 0 for as many as there are cores; changes no answer. ignored: as for
+///    find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 
@@ -73,20 +73,20 @@ BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned th
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings);
 /// Returns the decision of decide_by_blocks(). Preconditions: decide_by_meetings() returned empty;
-/// the blocks have their boxes or lanes. regions: as boxes_of_meetings() gives them.
+/// the blocks have their boxes or lanes. regions: a result of boxes_of_meetings().
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
                               std::shared_ptr<const TriangleBlocks> blocks);
 
-/// Estimates how many pairs of triangles are left per triangle of the blocks, without neighbours.
-/// Samples pairs of blocks of the meetings, and reads only vertices of these blocks.
+/// Estimates how many pairs of triangles are left per triangle of the blocks, not counting
+/// neighbours. Samples pairs of blocks, and reads only vertices of these blocks.
 double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance);
 
 /// Returns the number of triangles in all blocks that occur in the pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
 /// Returns all pairs of triangles whose boxes overlap, sorted. Returns empty if decide_by_blocks()
-/// chooses a tree, oriented boxes or normals. ignored, threads: as decide_by_blocks().
+/// chooses a tree, oriented boxes or normals. ignored, threads: as for decide_by_blocks().
 /// neighbours: false leaves out pairs of one object that share a vertex index.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,

@@ -1,5 +1,5 @@
 // Computes a block's frame from the second moments of its corners. Searches a tree of oriented
-// boxes, whose leaves are blocks, for one block after the other. Floats decide as in compare.cpp.
+// boxes, whose leaves are blocks, for each block. As in compare.cpp, only floats decide.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>
@@ -36,13 +36,13 @@ HWY_INLINE Vector dot(const std::array<float, 3>& d, Vector x, Vector y, Vector 
   return hn::Add(hn::Add(hn::Mul(all(d[0]), x), hn::Mul(all(d[1]), y)), hn::Mul(all(d[2]), z));
 }
 
-// Returns bits: which boxes of the block may have a common point with `one`. The separating axes
-// are those of Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
+// Returns a bit for each box of the block that may have a common point with `one`. The separating
+// axes are those of Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
 HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const OrientedBox& one,
                                        float margin) {
   std::uint32_t out = 0;
   for (std::size_t from = 0; from < kWide; from += kLanes) {
-    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: block direction k along i of `one`
+    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: block axis k along axis i of `one`
     const auto dx = hn::Sub(at(block.middle, 0, from), all(one.middle[0]));
     const auto dy = hn::Sub(at(block.middle, 1, from), all(one.middle[1]));
     const auto dz = hn::Sub(at(block.middle, 2, from), all(one.middle[2]));
@@ -259,7 +259,7 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
                       const Vec3& origin, float margin, OrientedLanes& out) {
   Moments moments;
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last triangle. Its box along the axes meets nothing.
+    // A lane without a triangle repeats the last triangle. The lane's box in BlockLanes is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 corner = scene.vertices[scene.triangles[t][c]] - origin;
@@ -426,8 +426,8 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take) {
   const std::vector<std::uint32_t> place = blocks.blocks.lane_places();
-  // Erases neighbours from index `from` on. Pairs before `from` stay: they may be of different
-  // objects, and such a pair counts even if it shares a vertex index.
+  // Erases neighbours from index `from` on. Pairs before `from` stay: their triangles may belong to
+  // different objects, which may share vertices.
   const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {
     const auto shared = [&](const TrianglePair& pair) {
       return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);

@@ -35,7 +35,7 @@ struct alignas(64) WideOriented {
   std::array<std::array<float, kWide>, 3> middle, half;
 };
 
-/// The triangles of a block, in the lanes of its BlockLanes.
+/// The triangles of a block, in the same lanes as in the block's BlockLanes.
 struct alignas(64) OrientedLanes {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   Frame frame;
@@ -43,7 +43,7 @@ struct alignas(64) OrientedLanes {
   FloatBox bound;          // the box around all boxes
 };
 
-/// The blocks of objects that meet others, in the order of spatial_order().
+/// The blocks of objects with a non-empty region. Triangles are in the order of spatial_order().
 struct OrientedBlocks {
   TriangleBlocks blocks;                     // all objects with a region are gathered
   UninitializedVector<OrientedLanes> lanes;  // one for each of blocks.lanes
@@ -53,8 +53,8 @@ struct OrientedBlocks {
   float margin = 0;  // two oriented boxes are apart if the gap along a direction is larger
 };
 
-/// Returns null if the coordinates are too large or too small for floats. regions: per object, as
-/// gather_scattered() takes them. threads: 0 for as many as there are cores.
+/// Returns null if the coordinates are too large or too small for floats. regions: as for
+/// gather_scattered(). threads: 0 for as many as there are cores.
 std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double clearance,
                                                     std::span<const Box> regions, unsigned threads);
 

@@ -93,8 +93,8 @@ class Walk {
     for (std::uint32_t k = 0; k < kWide; ++k) set(k, children.get(k), kWide * number + k);
   }
 
-  // Returns the pairs of children that overlap. If there are more than `most`, may return only some
-  // of them, but more than `most`. Else the order does not depend on threads.
+  // Returns the pairs of children that overlap. If more than `most` overlap, may return only some
+  // of these pairs, but more than `most`. Otherwise the order does not depend on threads.
   std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs,
                                               std::size_t most) const {
     constexpr std::size_t kAtOnce = 256;
@@ -227,7 +227,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   out.blocks.overlaps = out.blocks.pairs.size();
   out.blocks.meetings = meetings.all.size();
   out.blocks.triangles = triangles_in(out.blocks.pairs, blocks);
-  // If blocks overlap so often, oriented boxes or a tree have to decide.
+  // If blocks overlap more often than this limit, oriented boxes or a tree have to decide.
   if (kWide * out.blocks.overlaps > kPairsPerBlock * (out.blocks.triangles + kWide * kWide))
     return std::nullopt;
   return out;

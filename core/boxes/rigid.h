@@ -1,5 +1,5 @@
-// Objects that move as a whole. The triangles of an object rest in a frame of its own, so their
-// blocks and a tree of boxes over them are made once. A motion first moves boxes, and then only the
+// Objects that move as a whole. The triangles of an object are fixed in the object's own frame, so
+// their blocks and a tree of boxes are made once. A motion first moves boxes, and then only the
 // vertices of blocks whose moved boxes overlap.
 //
 // No margin is needed. A corner of a moved box comes from the same operations that move a vertex.
@@ -21,7 +21,7 @@
 
 namespace farcull {
 
-/// Moves a point p to r p + t. All numbers are finite; it may mirror, scale, shear and flatten.
+/// Moves a point p to r p + t. All numbers are finite. May mirror, scale, shear and flatten.
 struct RigidMotion {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
   std::array<double, 3> t = {0, 0, 0};
@@ -44,8 +44,8 @@ Box moved(const RigidMotion& motion, const Box& box);
 
 /// The blocks of the objects of a scene, and trees over them, each object in its own frame.
 struct RigidBlocks {
-  /// In the order of spatial_order(), without boxes and lanes. `objects` and `origin` are those of
-  /// the last motions.
+  /// The blocks, in the order of spatial_order(), without boxes and lanes. Members `objects` and
+  /// `origin` are those of the last motions.
   std::shared_ptr<TriangleBlocks> of;
   std::vector<std::uint32_t> object_of;     // per block
   std::vector<std::uint32_t> first_vertex;  // per block and one past the last: index in `vertices`
@@ -64,7 +64,7 @@ RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads);
 
 /// Decides as decide_by_blocks() for the moved objects, but reads no vertices. Returns empty if
 /// decide_by_blocks() has to decide: an object is tested against itself, a moved box may be
-/// infinite, or too many boxes overlap. motions: one for each object. ignored: as find_meetings().
+/// infinite, or too many boxes overlap. motions: one for each object. ignored: see find_meetings().
 std::optional<BlockDecision> decide_by_motions(const Scene& scene,
                                                std::span<const RigidMotion> motions,
                                                double clearance,

@@ -4,9 +4,9 @@
 // (docs/reliability.md, "Boxes of blocks" and "Oriented boxes"). The triangles of a pair belong to
 // two objects, or to one object that is tested against itself. The exact test is in verify/.
 //
-// A plan says what finds the pairs: boxes of blocks of 16 triangles, along the axes or oriented, or
-// a tree of the boxes of all triangles. The rules are fixed: the same scene and settings give the
-// same plan.
+// A plan decides how pairs are found: by boxes of blocks of 16 triangles, along the axes or
+// oriented, or by a tree of the boxes of all triangles. The rules are fixed: the same scene and
+// settings give the same plan.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct BoxesSettings {
   bool full = false;       // leave nothing out: the boxes of all triangles are compared
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
   bool lists = false;      // pairs found by blocks are listed even if find_boxes() has a `take`
-  /// Pairs of objects that are not tested against each other, as in_order() gives them.
+  /// Pairs of objects that are not tested against each other; a result of in_order().
   std::vector<ObjectPair> ignored = {};
 };
 
@@ -38,9 +38,9 @@ struct BoxesPlan {
   bool nothing_can_meet() const { return !by_tree() && decision.blocks.empty(); }
 };
 
-/// Decides what finds the pairs. threads: 0 for as many as there are cores. memory: one object for
+/// Decides how pairs are found. threads: 0 for as many as there are cores. memory: one object for
 /// all frames of a scene, or null to keep nothing. Precondition: memory->moved.update(scene) began
-/// this frame. With a memory, something else may find the pairs, but no colliding pair is lost.
+/// this frame. With a memory, pairs may be found in another way, but no colliding pair is lost.
 /// decided: without a memory, the answer of decide_by_motions() for this scene and these settings,
 /// or null. It is not used if settings.full is set. Throws Error for a scene that is too large.
 /// Throws std::logic_error for a clearance that is negative or not finite.

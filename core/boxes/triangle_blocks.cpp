@@ -26,8 +26,8 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
 
 // Objects with fewer triangles are not sampled.
 constexpr std::uint32_t kLeastSampled = 4096;
-// Returns the position of item k of a sample, in [0, 1). Multiples of the golden ratio are as even
-// as a grid, but have no period. A period could match a period of the surface.
+// Returns the position of item k of a sample, in [0, 1). Multiples of the golden ratio, modulo 1,
+// are as even as a grid, but have no period. A period could match a period of the surface.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
@@ -303,7 +303,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
         n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t block = begin; block < end; ++block) {
             const std::size_t from = block * kWide;
-            // Prefetches indices three blocks ahead and, by their indices, corners one block ahead.
+            // Prefetches vertex indices three blocks ahead, and vertices one block ahead.
             for (std::size_t k = from; k < from + kWide; ++k) {
               const std::size_t last = order.size() - 1;
               __builtin_prefetch(&scene.triangles[order[std::min(k + 3 * kWide, last)]]);

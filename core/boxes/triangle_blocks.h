@@ -26,9 +26,9 @@ struct TriangleBlocks {
   std::vector<std::uint32_t> first;  // per object and one past the last: its first block
   std::vector<Box> objects;          // per object: its box; empty if it has no triangle
   std::vector<std::uint32_t> order;  // triangles in the order of the blocks; empty: as in the file
-  Vec3 origin = Vec3::Zero();        // boxes in floats are relative to it; finite
+  Vec3 origin = Vec3::Zero();        // finite; boxes in floats are relative to this point
 
-  /// A gathered object: its triangles were put in an order of their own.
+  /// A gathered object: its triangles were put in a new order.
   struct Gathered {
     std::uint32_t first = 0;  // index of its first block in `lanes`
     std::uint32_t count =
@@ -85,10 +85,10 @@ void divide(const Scene& scene, TriangleBlocks& blocks);
 /// Makes blocks in the order of the file, and marks stretched objects. threads: 0 for as many as
 /// there are cores.
 TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads);
-/// Chooses the origin. In each scattered object, orders the triangles that meet the object's region
-/// by size class and Morton code, as blocks with lanes. In each stretched object, orders all
-/// triangles by spatial_order(). regions: per object a box that contains the grown boxes of all its
-/// triangles that can meet anything; empty if no triangle can.
+/// Chooses the origin. Sorts triangles into blocks with lanes. In a scattered object these are the
+/// triangles that meet the object's region, sorted by size class and Morton code. In a stretched
+/// object these are all triangles, in the order of spatial_order(). regions: per object a box that
+/// contains the grown boxes of all its triangles that can meet anything; empty if no triangle can.
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
                       unsigned threads, TriangleBlocks& blocks);
 

@@ -1,6 +1,6 @@
-// The few operations that culling needs of a rasterizer. Implementations: GL
-// (core/gl/canvas/canvas.h), the cores of the CPU (core/native/canvas.h), and one that behaves as
-// badly as the device assumptions allow (verify/worst_canvas.h).
+// The few operations of a rasterizer that culling needs. There are three implementations: GL
+// (core/gl/canvas/canvas.h), CPU (core/native/canvas.h), and a canvas that behaves as badly as the
+// device assumptions allow (verify/worst_canvas.h).
 #pragma once
 
 #include <algorithm>
@@ -17,28 +17,28 @@
 
 namespace farcull {
 
-/// Counts since the canvas was made. A canvas on the cores of the CPU leaves all counts 0.
+/// Counts since the canvas was constructed. A canvas on the CPU leaves all counts 0.
 struct CanvasWork {
   std::uint64_t passes = 0;         // calls of Canvas::run() with at least one step
   std::uint64_t draws = 0;          // draw calls
   std::uint64_t dispatches = 0;     // runs of compute programs
   std::uint64_t state_changes = 0;  // changes of program, target or depth test between steps
-  std::uint64_t queries = 0;  // occlusion queries, and for each pass a query that counts primitives
-  std::uint64_t readbacks = 0;         // reports and queries that were read
-  std::uint64_t waits = 0;             // waits for the device to finish its commands
-  std::uint64_t uploaded_bytes = 0;    // bytes of elements and of lists of passes
+  std::uint64_t queries = 0;    // occlusion queries, and one query per pass that counts primitives
+  std::uint64_t readbacks = 0;  // reports and queries that were read
+  std::uint64_t waits = 0;      // waits for the device to finish its commands
+  std::uint64_t uploaded_bytes = 0;    // bytes of elements and of draw lists
   std::uint64_t downloaded_bytes = 0;  // bytes of reports and queries
-  std::uint64_t spans = 0;             // passes and uploads; the device's clock may time them
+  std::uint64_t spans = 0;             // passes and uploads; the device may measure their times
   std::uint64_t timed = 0;             // spans whose time is known
   double device_ms = 0;                // sum of the known times, by the clock of the device
 
-  /// Returns the time of all spans on the device, ms. Returns empty if there was no span, or if a
-  /// span was not timed.
+  /// Returns the sum of the times of all spans on the device, ms. Returns empty if there was no
+  /// span, or if the time of a span is unknown.
   std::optional<double> known_ms() const {
     if (spans == 0 || timed < spans) return {};
     return device_ms;
   }
-  /// Calls change(mine, other's) for each count.
+  /// Calls change(count, other.count) for each count.
   template <class Change>
   void for_each(const CanvasWork& other, const Change& change) {
     change(passes, other.passes);
@@ -66,61 +66,61 @@ struct CanvasWork {
 
 /// How a primitive gets its depth. fragment: the primitive is a proxy parallel to the screen, and
 /// the solid's shader function computes its entry and exit depths. fixed: the primitive is a
-/// triangle, and the rasterizer interpolates its depth.
+/// triangle, and its depth is interpolated from the corners.
 enum class DepthMode { fragment, fixed };
 
-/// The parameters of a solid, read by its shader function: five vec4. The last three numbers are 0,
-/// except in elements that the canvas itself draws at a fixed depth.
+/// The parameters of a solid: five vec4 that its shader function reads. The last three numbers are
+/// 0, except in elements that the canvas itself draws at a fixed depth.
 using Solid = std::array<std::array<float, 4>, 5>;
 
-/// A convex quadrilateral (px, in order around) and the solid seen through it.
+/// A convex quadrilateral (px, corners in cyclic order) and the solid that is seen through it.
 struct Proxy {
   std::array<float, 8> corners;  // x, y of each corner
   Solid solid;
 };
 
-struct NativeJob;    // core/native/canvas.h
-struct NativeLines;  // core/native/canvas.h
+struct NativeJob;    // defined in core/native/canvas.h
+struct NativeLines;  // defined in core/native/canvas.h
 
-/// A solid's shader function, one source for GLSL and C++ (core/base/glsl_shim.h):
+/// The shader function of a solid, one source for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
-/// It returns false if the line through the pixel centre c along the depth misses the solid. Else
-/// [entry, exit] contains the part of the line inside the solid. The interval is widened outward by
-/// the function's own rounding error.
+/// It considers the line in depth direction through the pixel centre c. It returns false if the
+/// line misses the solid. Else [entry, exit] contains the line's part inside the solid. The
+/// interval is widened outward by the rounding error of the function itself.
 struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// solid_interval on the worst device that GLSL allows (core/base/glsl_worst.h). Returns false if
-  /// any permitted rounding gives a miss. Else sets the latest entry and the earliest exit.
+  /// Computes solid_interval as the least accurate device that GLSL allows
+  /// (core/base/glsl_worst.h). Returns false if any permitted rounding misses. Else sets the latest
+  /// entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// Both run solid_interval on the lanes of this processor (core/native/canvas.h): draw_native for
-  /// proxies, lines_native for single lines.
+  /// Run solid_interval on this processor's vector lanes (core/native/canvas.h). draw_native draws
+  /// proxies; lines_native computes the entries and exits of single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
 
-/// All corners of a proxy have |x| <= x and |y| <= y (px), strictly inside the viewport.
+/// All corners of a proxy satisfy |x| <= bounds.x and |y| <= bounds.y (px), inside the viewport.
 struct ProxyBounds {
   double x;
   double y;
 };
 
-/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1) from the
-/// window's lower left corner; empty if x0 >= x1 or y0 >= y1.
+/// The pixels of the window in which an element may have a fragment: [x0, x1) x [y0, y1), counted
+/// from the window's lower left corner. Empty if x0 >= x1 or y0 >= y1.
 struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };
 
-/// Bounds of a proxy, known before it is fitted to its triangle. For most proxies they suffice to
-/// show that the proxy changes nothing, or that it is seen.
+/// Bounds of a proxy, known before the proxy is fitted to its triangle. For most proxies the bounds
+/// suffice to show that drawing the proxy has no effect, or that the proxy is seen.
 struct ProxyOutline {
-  PixelRange range;         // pixels that the rectangle may cover, by its corners
+  PixelRange range;         // pixels that the rectangle may cover, from its corners
   float nearest, farthest;  // px; bounds of all entries and exits of the proxy
-  /// A pixel of the window whose centre the proxy covers, and a depth (px). In this pixel, the exit
-  /// is at this depth or behind it (docs/budget.md, "The canvas on the CPU"). x = kNoPixel: no such
-  /// pixel is known.
+  /// A pixel whose centre the proxy covers, and a depth (px) that is not behind the exit in this
+  /// pixel (docs/budget.md, "The canvas on the CPU"). x = kNoPixel: no such pixel is known.
   std::uint16_t x, y;
   float depth;
 };
@@ -133,25 +133,25 @@ struct FattenBatch {
   std::size_t count = 0;
   const Window* window = nullptr;
   double radius = 0;  // px
-  double reach = 0;   // px; a proxy covers all pixel centres this close to its corners; 0: unknown
+  double reach = 0;   // px; pixel centres closer to a triangle's corner are covered; 0: unknown
   ProxyBounds bounds{};
   std::uint8_t* done = nullptr;  // per item: 1: its only proxy was made; 0: the item is not
                                  // drawable or has to be clipped to the region
-  // Per item, valid only if the item is done. Either `out` or `outlines` is null.
+  // One per item, valid only if `done` is 1. Either `out` or `outlines` is null.
   Proxy* out = nullptr;
   ProxyOutline* outlines = nullptr;
 };
 
-/// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns
-/// the elements first[i] .. first[i + 1] - 1.
+/// All elements that one view can draw: proxies (fragment) or triangles (fixed). Item i owns the
+/// elements first[i] .. first[i + 1] - 1.
 struct Drawables {
   DepthMode mode = DepthMode::fragment;
   std::vector<std::uint32_t> first{0};
-  UninitializedVector<Proxy> proxies;            // fragment; per element if `fit` is null
-  std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
-  std::vector<std::uint32_t> undrawable;         // items beyond the budget; they own no elements
+  UninitializedVector<Proxy> proxies;            // fragment; if `fit` is null, one per element
+  std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z (px) and 0 for each corner
+  std::vector<std::uint32_t> undrawable;         // items beyond the budget, without elements
 
-  /// For a canvas that fits proxies as it draws (Canvas::fits_proxies). If sources[e] >= kFitted,
+  /// For canvases that fit proxies while drawing (Canvas::fits_proxies). If sources[e] >= kFitted,
   /// element e is proxies[sources[e] - kFitted]. Else fit(batch) makes it from triangle sources[e];
   /// the caller sets items, count, out and done of `batch`. Null: sources and outlines are empty.
   void (*fit)(const FattenBatch& batch) = nullptr;
@@ -167,8 +167,8 @@ struct Drawables {
 };
 constexpr std::uint32_t kFitted = 0x80000000;
 
-/// One element, drawn for a slot (the index of an answer of the pass). Element kEverywhere is a
-/// quad over the window at the nearest depth. It is only stored, never asked, and hides everything.
+/// One element, drawn for a slot (the index of a result of the pass). kEverywhere is a quad over
+/// the window at the nearest depth. It may be stored, but not tested, and hides everything.
 struct Draw {
   std::uint32_t element;
   std::uint32_t slot;
@@ -177,19 +177,19 @@ constexpr std::uint32_t kEverywhere = 0xffffffff;
 
 enum class Verb : std::uint8_t { ask, store };
 
-/// A step of a pass: it asks or stores draws[first .. first + count - 1].
+/// A step of a pass: stores draws[first .. first + count - 1], or tests their visibility (ask).
 struct Step {
   Verb verb;
   std::uint32_t first;
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that starts empty. Draws of one slot are consecutive.
+/// Steps in order, on a depth buffer that is empty at first. Draws of one slot are consecutive.
 /// - store: each pixel keeps the nearest depth (the entry depth of a proxy).
-/// - ask: a slot is seen if one of its fragments (exit depth of a proxy) is at or behind the stored
-///   depth (GEQUAL). In a pixel without a stored depth, nothing is seen.
+/// - ask: a slot is seen if a fragment (exit depth of a proxy) is at the stored depth or behind it
+///   (GEQUAL). In a pixel without a stored depth, no fragment is seen.
 /// - touching = false: a fragment is seen only behind the stored depth (GREATER), as in S-CULLIDE.
-///   Contacts at equal depth are not seen, so no guarantee holds.
+///   Contacts at equal depth are not seen, so there is no guarantee.
 struct Pass {
   bool touching = true;
   std::uint32_t slots = 0;
@@ -201,71 +201,70 @@ class Canvas {
  public:
   virtual ~Canvas() = default;
   virtual const RasterLimits& limits() const = 0;
-  /// True if this canvas takes drawables whose proxies are not fitted yet (Drawables::fit).
+  /// True if begin() accepts drawables whose proxies are not fitted yet (Drawables::fit).
   virtual bool fits_proxies() const { return false; }
-  /// Later passes draw elements of `drawables`. The canvas refers to `drawables` until the next
-  /// begin().
+  /// Later passes draw elements of `drawables`, which must exist until the next begin().
   virtual void begin(const Window& window, const Drawables& drawables) = 0;
   /// Returns for each slot 1 if it is seen and 0 if not. Throws Error unless every command of the
   /// pass is known to have run (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
-  /// Returns the depth (px) that `draws` give to each pixel of the window: the nearest entry
-  /// (store) or the farthest exit (ask), or NaN without a fragment. Returns height rows of width
-  /// values. If mapped depths are equal, any of the fragments may be taken. Proxies only. For tests
-  /// of lemmas and for pictures.
+  /// Returns the depth (px) of `draws` in each pixel of the window: the nearest entry (store) or
+  /// the farthest exit (ask). NaN: no fragment. Returns height rows of width values. If mapped
+  /// depths are equal, any of their fragments may be taken. Proxies only. For tests of lemmas and
+  /// for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }
-  /// Returns for each pixel of the window the depth as the depth buffer holds it: the nearest entry
-  /// (store) or the farthest exit (ask) of `draws`. Returns height rows of width values in [0, 1].
-  /// An empty pixel has 1 for store and 0 for ask. For tests of lemmas and for pictures.
+  /// Returns the depth buffer's value in each pixel of the window: the nearest entry (store) or the
+  /// farthest exit (ask) of `draws`. Returns height rows of width values in [0, 1]. An empty pixel
+  /// has 1 for store and 0 for ask. For tests of lemmas and for pictures.
   virtual std::vector<float> depths(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no depths");
   }
-  /// Returns the device's work so far. All counts are 0 on the cores of the CPU.
+  /// Returns the work of the device so far. On the CPU all counts are 0.
   virtual CanvasWork work() const { return {}; }
 };
 
 /// Returns the scale of a window's depth map. All code maps depths by the same float expression:
-///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
-/// Items at fixed depths use the rest of [0, 1]: kEverywhere has 0, control items are in (0.75, 1).
+///   clamp(0.5 + z * scale, 0.25, 0.75)
+/// The clear value 1 is farther. Fixed depths are 0 (kEverywhere) or above 0.75 (control items).
 inline float depth_scale(const Window& window) {
   const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;
   return static_cast<float>(0.25 / reach);
 }
-/// Returns the size in px of one step of a depth buffer.
+/// Returns the largest step of a depth buffer in px.
 inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) {
-  // Depths lie in [1/4, 3/4]: the coarsest step of a 32-bit float there is 2^-24, as for 24 bits of
-  // fixed point.
+  // Mapped depths are in [1/4, 3/4]. The coarsest step of a 32-bit float there is 2^-24, as for 24
+  // bits of fixed point.
   return 0x1p-24 / depth_scale(window);
 }
-/// Returns a bound, in steps of 2^-24, for the distance of a depth read from a buffer to the exact
-/// 0.5 + z * scale, in any rounding mode. The product is at most 1/4 and errs by 2^-25. The sum is
-/// below 1 and errs by 2^-24. A buffer of 24 bits adds an error of 1 / (2^24 - 1) when it stores a
-/// depth, and of 2^-24 when the depth is read back as a float.
+/// Returns a bound, in steps of 2^-24, for the difference between a depth read from a buffer and
+/// the exact 0.5 + z * scale, in any rounding mode. The product is at most 1/4 and errs by 2^-25.
+/// The sum is below 1 and errs by 2^-24. A buffer of 24 bits adds an error of 1 / (2^24 - 1) when
+/// it stores a depth, and of 2^-24 when the depth is read back as a float.
 inline double depth_rounding(int depth_bits) {
   return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
-/// A GL canvas asks a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
+/// A GL canvas tests a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
 /// docs/budget.md, "Two programs", derives this slack; farcull_proofs (depth.behind) proves it. One
-/// program stores and another one asks. They may round the depth map in different directions, and
-/// may convert a depth to different 24-bit neighbours. With this slack a proxy with entry <= exit
-/// is still seen. 3/4 plus the slack stays below 1, the value of an empty pixel. The canvas's own
-/// items have fixed depths and need no slack. The native canvas needs none: one function rounds all
-/// depths to nearest.
+/// program stores depths and another program tests them. The two may round the depth map in
+/// different directions, and may convert a depth to different 24-bit neighbours. With this slack a
+/// proxy with entry <= exit is still seen. 3/4 plus the slack is below 1, the value of an empty
+/// pixel. The canvas's own items have fixed depths and need no slack. The native canvas needs no
+/// slack either: one function rounds all depths to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 
 // ---- questions to a kernel and its answers, wherever it runs: on a device or on the CPU.
 // verify/kernel_check.h decides which answers are right.
 
-/// A solid, and the line along the depth through a pixel centre (px).
+/// A solid, and the line in depth direction through a pixel centre (px).
 struct SolidCase {
   float cx, cy;
   Solid solid;
 };
-/// The result of solid_interval (core/canvas/canvas.h) for a SolidCase. Without a hit, entry and
-/// exit have no meaning.
+/// The result of solid_interval (SolidProgram) for a SolidCase. Without a hit, entry and exit are
+/// meaningless.
 struct SolidAnswer {
   bool hit;
   float entry, exit;

@@ -1,4 +1,4 @@
-// Clips triangles to the window and fattens them, in parallel. Then joins the drawables in order.
+// Clips triangles to the window and fattens them, in parallel. Joins the drawables in order.
 #include "core/canvas/fatten.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-// The triangles that one thread fattens, and their drawables until all parts are joined.
+// The triangles that one thread fattens, and their drawables.
 class Part {
  public:
   Part(const Fattener& fattener, const Drawables& waiting)
@@ -91,7 +91,7 @@ class Part {
 
   const Fattener& fattener_;
   const FattenBatch& batch_;
-  std::size_t fitted_ = 0;  // number of proxies that are already elements
+  std::size_t fitted_ = 0;  // number of proxies that are elements already
 };
 
 // Writes the drawables of all parts to `out`, in order, and reuses the memory of `out`.

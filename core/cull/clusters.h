@@ -12,10 +12,10 @@ namespace farcull {
 
 /// The levels between objects and triangles. A cluster has up to `size` triangles of one owner, in
 /// the order of a space-filling curve. One query asks all triangles of a cluster that are not
-/// culled yet. Each size is a level, in this order. These levels run only on the first visit of a
-/// view. They change no fixed point.
+/// culled yet. Each element of `sizes` is a level, in this order. These levels run only on the
+/// first visit of a view. They change no fixed point.
 struct Clusters {
-  std::vector<std::uint32_t> sizes;  // triangles, each 2 or more
+  std::vector<std::uint32_t> sizes;  // triangles per cluster, each 2 or more
   Reason reason = Reason::none;      // the reason in the trace; none: no entry in the trace
   std::uint64_t n = 0, m = 0;        // numbers n and m of the reason
 };
@@ -24,9 +24,8 @@ struct Clusters {
 /// may take part. Else returns no clusters.
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
 
-/// Sorts `triangles` (given in any order) by owner, then along the space-filling curve of Morton
-/// through the centres of their boxes inside the box of their owner, then by index. owner, boxes:
-/// per triangle of the scene.
+/// Sorts `triangles` (given in any order) by owner, then along a Morton curve by the centres of
+/// their boxes, in the box of the owner, then by index. owner, boxes: per triangle of the scene.
 std::vector<std::uint32_t> spatial_order(std::span<const std::uint32_t> triangles,
                                          std::span<const std::uint32_t> owner,
                                          std::span<const Box> boxes);

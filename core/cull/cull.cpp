@@ -44,8 +44,8 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
 // A view of the run, and the state after its last visit.
 struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // stored_version() when the first and the second pass at triangle level last ran in this view. As
-  // long as it stays the same, the stored set is unchanged.
+  // stored_version() when the first and the second pass at triangle level last ran in this view.
+  // While this version stays the same, the stored set is unchanged.
   std::uint64_t stored[2] = {0, 0};
   PassCost plain;  // cost of plain CULLIDE's two passes at triangle level on the live triangles
 };
@@ -126,7 +126,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
   return stages;
 }
 
-// The parts of one run; cull_by() puts them in order.
+// The steps of one run; cull_by() puts them in order.
 class Culling {
  public:
   Culling(const PassRule& rule, const Scene& scene, const Regions& regions,
@@ -260,7 +260,7 @@ class Culling {
     items_ = VisitItems(state_);
     FattenCounts counts;
     const ViewReport& report = result_.views[view];
-    // If a step draws many proxies, they are not fitted here: the canvas later fits the undecided
+    // If a step draws many proxies, these are not fitted here: the canvas later fits the undecided
     // proxies together. A proxy covers each pixel centre that lies deeper inside the proxy than the
     // rounding error of its corners (lemma 21).
     constexpr std::size_t kLeastOfOwner = 16;
@@ -361,10 +361,10 @@ class Culling {
     return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
   }
 
-  // Returns a version of the set that the pass for `bit` stores. The other bit decides the set.
+  // Returns a version of the set that the pass for `bit` stores. The set depends on the other bit.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // True if the pass has to run. It is left out only if bits are kept across views and its stored
-  // set is unchanged.
+  // True if the pass has to run. A pass is left out only if bits are kept across views and its
+  // stored set is unchanged.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];

@@ -13,7 +13,7 @@
 // (fully visible in the second pass); BFV both bits.
 //
 // Plain CULLIDE begins every level of a visit without bits: a triangle is culled if one view finds
-// it fully visible in both passes. It asks and stores every live triangle in both passes.
+// it fully visible in both passes. Both passes ask and store (struct Pass) every live triangle.
 // Quick-CULLIDE keeps the bits across levels, views and rounds. It stores FFV triangles only in the
 // first pass and asks them only in the second. It asks SFV triangles only in the first pass and
 // stores them only in the second. It leaves out a pass whose stored set has not changed since the
@@ -78,12 +78,12 @@ struct CullSettings {
   Fattener fattener;
   RadiusRule radius;
   bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
-  /// Every triangle of an object with Object::self is an owner. Use it with regions of
+  /// Every triangle of an object with Object::self is its own owner. Requires regions of
   /// find_regions(scene, {.self = true}).
   bool self = false;
   /// The owner of each triangle of the scene, for example its patch (core/cull/patches.h). If
-  /// empty, `self` says what the owners are. All triangles of an owner are of one object. With
-  /// owners given here, there is no object level.
+  /// empty, `self` determines the owners. All triangles of an owner are of one object. With owners
+  /// given here, there is no object level.
   std::vector<std::uint32_t> owners = {};
   bool touching = true;  // Pass::touching; false: triangles that only touch are not seen
   Clusters clusters = {};
@@ -107,7 +107,7 @@ struct CullSettings {
 /// What is known about a view after a run.
 struct ViewReport {
   std::string name;
-  bool drawn = false;     // false: left out or unresolvable, see the stages
+  bool drawn = false;     // false: left out or unresolvable; see CullResult::stages
   int width = 0;          // px
   int height = 0;         // px
   double pixel_size = 0;  // world units
@@ -118,7 +118,7 @@ struct ViewReport {
 
 struct CullResult {
   std::vector<std::uint32_t> live;  // ascending; the triangles that may collide
-  /// Per triangle of the scene. 1: it has F; 2: it has L; 3: it is culled or not in the regions.
+  /// Per triangle of the scene. 0: no bit; 1: F; 2: L; 3: culled, or not in the regions.
   std::vector<std::uint8_t> bits;
   std::vector<ViewReport> views;
   std::vector<Stage> stages;
@@ -141,7 +141,7 @@ struct CullResult {
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 
-/// As cull(), with a rule of the caller. Tests pass broken rules and check that errors are noticed.
+/// As cull(), with the caller's rule. Tests pass broken rules and check that errors are noticed.
 CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
                    const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
 

@@ -20,7 +20,7 @@ void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
   }
 }
 
-// All that decides which items a pass asks and stores.
+// The state that determines which items a pass asks and stores.
 struct PassQuestion {
   const CullState& state;
   const VisitItems& visit;
@@ -199,7 +199,7 @@ PassCost run_pass(CullState& state, VisitItems& items, const Drawables& drawable
   return builder.cost();
 }
 
-// Counts as PassBuilder would for plain CULLIDE, but makes no lists.
+// Counts the cost as PassBuilder does for plain CULLIDE, but makes no lists.
 PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
                     Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};

@@ -34,7 +34,7 @@ constexpr PassRule kQuickRule = {
 /// One query asks all triangles of a group. The groups of an owner are consecutive.
 struct Level {
   std::uint32_t size;                                 // as Stage::level
-  const std::vector<std::uint32_t>* group = nullptr;  // per triangle; null: each is a group
+  const std::vector<std::uint32_t>* group = nullptr;  // per triangle; null: one group per triangle
 };
 
 struct CullState {
@@ -62,9 +62,9 @@ struct OpenItems {
 /// The triangles that one visit of a view asks and stores.
 struct VisitItems {
   VisitItems() = default;
-  /// Takes the live triangles.
+  /// Takes the live triangles of the state.
   explicit VisitItems(const CullState& state);
-  /// Sets `undrawable` and `open`. Call it when the drawables of the items have been made.
+  /// Sets `undrawable` and `open`. Precondition: the drawables of the items are made.
   void take_drawables(const Drawables& drawables);
   /// Subtracts an item that has been culled from the counts in `open`.
   void close(std::uint32_t item, const Drawables& drawables);

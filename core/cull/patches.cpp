@@ -1,4 +1,4 @@
-// Cuts objects into patches along a Morton curve, and joins each patch with itself by boxes.
+// Cuts objects into patches along a Morton curve, and finds pairs inside each patch by boxes.
 #include "core/cull/patches.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 // Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
-// and drawing keeps these. Larger patches leave more pairs to boxes. Where boxes are bad, a
-// sixteenth of the object leaves the fewest candidates. Below kLeastPatch, nearly all triangles are
-// at borders. Above kMostPatch, too many pairs of a patch may be left to test.
+// and drawing keeps those. Larger patches leave more pairs to boxes. If boxes separate triangles
+// poorly, a sixteenth of the object leaves the fewest candidates. Below kLeastPatch, nearly all
+// triangles are at borders. Above kMostPatch, too many pairs of a patch may be left to test.
 constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;
 

@@ -24,8 +24,8 @@ struct Patches {
 /// Returns the triangles of objects that are marked `self`, ascending.
 std::vector<std::uint32_t> triangles_of_marked(const Scene& scene);
 
-/// Returns the usual size: a sixteenth of the largest number of `marked` triangles in one object,
-/// but at least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
+/// Returns the usual patch size: a sixteenth of the largest number of `marked` triangles in one
+/// object, but at least 256 and at most 4096. marked: some of triangles_of_marked(), ascending.
 std::uint32_t usual_patch_size(const Scene& scene, std::span<const std::uint32_t> marked);
 
 /// Cuts the `marked` triangles of each object, in the order of spatial_order(), into patches of

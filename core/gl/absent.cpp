@@ -1,6 +1,6 @@
-// Compiled in place of the rest of this folder if farcull is built without OpenGL
-// (-DFARCULL_GL=OFF). In such a build no GlContext can be made. Functions that take a GlContext
-// exist only for the linker, and throw the same Error as the constructor.
+// Without OpenGL (-DFARCULL_GL=OFF), this file replaces all other files of core/gl except
+// picture/window.cpp. GlContext's constructor throws Error. Functions that take a GlContext cannot
+// be reached; they exist for the linker.
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"

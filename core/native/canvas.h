@@ -1,13 +1,13 @@
-// The canvas on the cores of the CPU: no device and no driver. Every thread draws all steps of a
-// pass, in order, on its rows of the window, so any number of threads gives the same bits. Every
-// instruction set (lane_targets()) gives the same bits, since each operation is rounded once.
+// The canvas on the CPU, without device and driver. Every thread draws all steps of a pass, in
+// order, in its own rows of the window. So the bits do not depend on the number of threads. Each
+// operation is rounded once, so all instruction sets (lane_targets()) give the same bits, too.
 //
 // For proxies this canvas guarantees more than OpenGL (docs/budget.md, "The canvas on the CPU"):
 // samples lie at pixel centres, corners are not snapped, and the arithmetic is IEEE 754. Raw
 // triangles follow OpenGL's rules (draw_triangles_native) and give no guarantee.
 //
-// NativeJob, the job of one thread, is plain data, so that functions compiled for any instruction
-// set can take it.
+// NativeJob, the work of one thread, is plain data, because functions compiled for different
+// instruction sets use it.
 #pragma once
 
 #include <cstdint>
@@ -18,23 +18,23 @@
 
 namespace farcull {
 
-/// The buffer has this many columns and rows more than the window. A block of pixels begins inside
-/// the window, but may end outside. The block is read and written back as a whole. Without extra
-/// columns it would write to the next row, which may belong to another thread.
+/// The buffer has this many extra columns and rows. A block of pixels may begin inside the window
+/// and end outside, and is read and written as a whole. Without extra columns, the block would
+/// write to the next row, which may belong to another thread.
 inline constexpr int kNativeOverhang = 8;
 
-/// run: draws a pass. values: returns depths in px; after Verb::store, the nearest depth of each
-/// pixel; after Verb::ask, the farthest. depths: returns these depths as the depth buffer holds
-/// them.
+/// run: draws a pass. values: returns depths in px: the nearest depth of each pixel for
+/// Verb::store, the farthest for Verb::ask. depths: returns the same depths as the depth buffer
+/// holds them.
 enum class NativeOutput : std::uint8_t { run, values, depths };
 
-/// The steps of a pass, in order, that a thread draws in the rows [y0, y1) of a window.
+/// What one thread draws: the steps of a pass, in order, in the rows [y0, y1) of a window.
 struct NativeJob {
   // The window.
   int width, height;  // px
-  int stride;         // floats from row to row of the buffer; width + kNativeOverhang or more
+  int stride;         // floats from row to row of the buffer; at least width + kNativeOverhang
   int y0, y1;
-  float scale;        // of the depth map (depth_scale())
+  float scale;        // scale of the depth map (depth_scale())
   bool fixed24;       // the buffer rounds depths to multiples of 1 / (2^24 - 1)
   bool conservative;  // triangles have a fragment in each pixel that they touch
   // The elements.
@@ -48,10 +48,10 @@ struct NativeJob {
   std::uint32_t step_count;
   const Draw* draws;
   float* depth;        // height + kNativeOverhang rows of stride floats
-  std::uint8_t* seen;  // per slot, shared by all threads; a thread writes only the value 1
+  std::uint8_t* seen;  // per slot; all threads write to it, but only the value 1
 };
 
-/// `count` lines in the direction of depth, for the kernel of one solid. cx, cy: px. hit: 0 or 1.
+/// `count` lines in depth direction, for the kernel of one solid. cx, cy: px. hit: 0 or 1.
 struct NativeLines {
   const Solid* solid;
   std::uint32_t count;
@@ -62,15 +62,15 @@ struct NativeLines {
   float* exit;
 };
 
-/// Draws raw triangles, as CULLIDE does, by the fixed rules of OpenGL: corners are snapped to 8
-/// subpixel bits, the top-left rule decides which pixel centres are inside, and depth is
-/// interpolated from the corners. Raw triangles give no guarantee.
+/// Draws raw triangles, as CULLIDE does, by OpenGL's rules: corners are snapped to 8 subpixel bits,
+/// the top-left rule decides on pixel centres that lie on an edge, and depth is interpolated from
+/// the corners. Raw triangles give no guarantee.
 ///
 /// With `conservative`, as in GL_NV_conservative_raster, a triangle has a fragment in every pixel
-/// whose closed square the snapped triangle touches. The fragment's depth is that of the triangle's
-/// plane at the pixel's centre, limited to the range of the corners' depths. If the triangle's
-/// image is a segment or a point, the depth is the middle of that range. A fragment has one depth,
-/// but the triangle has a range of depths in the pixel, so pairs can still be missed.
+/// whose closed square the snapped triangle touches. The fragment's depth is the depth of the
+/// triangle's plane at the pixel centre, clamped to the range of the corners' depths. If the image
+/// of the triangle is a segment or a point, the depth is the middle of that range. A fragment has
+/// one depth, but the triangle has a range of depths in the pixel, so pairs can still be missed.
 void draw_triangles_native(const NativeJob& job);
 constexpr int kNativeSubpixelBits = 8;
 
@@ -86,8 +86,8 @@ RasterLimits native_limits(int depth_bits = 32);
 class NativeCanvas final : public Canvas {
  public:
   /// `mode` and `solid` are those of the fattener that makes the drawables. Throws std::logic_error
-  /// if proxies are drawn and the solid has no function on lanes. Throws Error for depth bits other
-  /// than 24 and 32.
+  /// if proxies are drawn and the solid has no function for lanes. Throws Error for depth bits
+  /// other than 24 and 32.
   NativeCanvas(DepthMode mode, const SolidProgram& solid, const NativeCanvasOptions& options = {});
 
   const RasterLimits& limits() const override { return limits_; }
@@ -111,21 +111,21 @@ class NativeCanvas final : public Canvas {
   Window window_;
   const Drawables* drawables_ = nullptr;  // the caller keeps them until the next begin()
   std::vector<PixelRange> ranges_;        // per triangle
-  std::vector<ProxyOutline> outlines_;    // per proxy; empty if the drawables have outlines
-  std::vector<std::uint64_t> work_;       // per row: the elements with a lower middle row
+  std::vector<ProxyOutline> outlines_;    // per proxy; empty if the drawables contain outlines
+  std::vector<std::uint64_t> work_;       // per row: number of elements whose middle row is lower
   int stride_ = 0;
   std::vector<float> depth_;
 };
 
-// The instruction sets that the native canvas can use on this processor (lanes.cpp).
+// Instruction sets that the native canvas can use on this processor (lanes.cpp).
 
-/// Returns names, the best first, such as "AVX3", "AVX2", "SSE4", "SCALAR" or "EMU128". The last
-/// name stands for plain C++.
+/// Returns the names of these instruction sets, the best first, such as "AVX3", "AVX2", "SSE4",
+/// "SCALAR" or "EMU128". The last name means plain C++.
 std::vector<std::string> lane_targets();
 std::string lane_target();
-/// All threads use this one of lane_targets() from now on. An empty name chooses the best. No bit
-/// of an answer depends on the choice. Must not be called during a draw. Throws Error for an
-/// instruction set that this processor lacks.
+/// Selects one of lane_targets() for all threads. An empty name selects the best. The results do
+/// not depend on the selection. Must not be called during a draw. Throws Error for an instruction
+/// set that this processor lacks.
 void use_lane_target(const std::string& name);
 
 }  // namespace farcull

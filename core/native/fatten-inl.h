@@ -1,7 +1,7 @@
-// Fattens the triangles that lie inside the region, one on each lane. A fit (offsets/lanes.cpp) is
-// a type with these functions on lanes:
-//   rectangle(p, radius, bound_x, bound_y, corners), solid(p, radius, numbers) and
-//   depths(p, radius, nearest and farthest)
+// Fattens triangles inside the region, one on each lane. Triangles that need clipping are left out.
+// Fit, a template parameter, is a type with these functions on lanes (offsets/lanes.cpp):
+//   rectangle(p, radius, bound_x, bound_y, corners)
+//   solid(p, radius, numbers), depths(p, radius, nearest and farthest)
 #if defined(FARCULL_NATIVE_FATTEN_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_FATTEN_INL_H_
 #undef FARCULL_NATIVE_FATTEN_INL_H_
@@ -26,15 +26,15 @@ HWY_INLINE void prefetch_corners(const Scene& scene, std::uint32_t item) {
   for (const std::uint32_t vertex : scene.triangles[item]) hwy::Prefetch(&scene.vertices[vertex]);
 }
 
-/// Sets corners[3 k + i] to coordinate i of corner k of the triangles `items`, one on each lane. If
-/// `count` is below kWide, the last triangle is repeated.
+/// Sets corners[3 k + i] to coordinate i of corner k. Each lane holds one of the triangles `items`.
+/// If `count` is below kWide, the last triangle fills the other lanes.
 HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, int count,
                                WideLane (&corners)[9]) {
   const auto vertex = [&](int lane, int k) HWY_ATTR {
     return scene.vertices[scene.triangles[items[std::min(lane, count - 1)]][k]].data();
   };
 #if HWY_TARGET <= HWY_AVX2
-  // One load reads the three coordinates of a vertex. Four vertices are transposed at a time.
+  // One load reads the three coordinates of a vertex. Vertices are transposed in groups of four.
   const hn::FixedTag<double, 4> four;
   const auto three = hn::FirstN(four, 3);
   using Four = hn::Vec<decltype(four)>;
@@ -71,11 +71,11 @@ HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, i
 #endif
 }
 
-/// The images of kWide triangles. The operations and their order are those of to_pixel()
+/// The images of kWide triangles. The operations and their order are the same as in to_pixel()
 /// (core/view/view.h).
 struct WidePixels {
   dvec3 p[3];
-  WideLane error = 0.0;  // px; the largest error of a corner
+  WideLane error = 0.0;  // px; largest error of a corner
 
   HWY_INLINE WidePixels(const Window& window, const WideLane (&corners)[9]) {
     for (int k = 0; k < 3; ++k) {
@@ -94,7 +94,7 @@ struct WidePixels {
   static HWY_INLINE WideLane pixel_error_bound(WideLane sum) {
     return WideLane(kMapRounding) * sum + WideLane(kMapUnderflow);
   }
-  /// The lanes whose triangles are drawable, and inside the region without clipping.
+  /// Returns the lanes whose triangles are drawable and need no clipping.
   HWY_INLINE WideBool inside(const Window& window) const {
     WideBool in = error <= WideLane(kMaxDoubleError);
     for (const dvec3& q : p) {
@@ -121,7 +121,7 @@ struct WideOutlines {
     Fit::depths(pixels.p, batch.radius, depths);
     out.nearest = depths[0];
     out.farthest = depths[1];
-    // Finds the farthest corner; x and y become the pixel that contains it.
+    // Finds the farthest corner. Sets x and y to the pixel that contains it.
     dvec3 corner = pixels.p[0];
     for (int k = 1; k < 3; ++k) {
       const WideBool behind = pixels.p[k].z > corner.z;
@@ -137,8 +137,8 @@ struct WideOutlines {
                              out.x >= 0.0 && out.y >= 0.0 && out.x < half_x + half_x &&
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
-    // Rounding to double errs by 2^-53 of the value, to float by 2^-24. So this depth is surely
-    // less than the corner's.
+    // Rounding to double errs by 2^-53 of the value, and rounding to float by 2^-24. So out.depth
+    // is certainly less than the depth of the corner.
     out.depth = farcull::HWY_NAMESPACE::nearest(
         corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
     return out;
@@ -146,7 +146,7 @@ struct WideOutlines {
 
  private:
   static HWY_INLINE WideLane floored(WideLane a) { return WideLane(hn::Floor(a.v)); }
-  /// Does the same as pixel_range() (core/canvas/fatten.h), but along one axis.
+  /// Computes pixel_range() (core/canvas/fatten.h) along one axis, without a margin.
   static HWY_INLINE void range(WideLane a, WideLane b, WideLane c, WideLane d, int size,
                                WideLane& from, WideLane& to) {
     const WideLane half(0.5 * size), most(size);
@@ -162,7 +162,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   HWY_ALIGN float depths[3][kWide];
   const WideLane* const pixel_of[6] = {&of.x0, &of.x1, &of.y0, &of.y1, &of.x, &of.y};
   for (int i = 0; i < 6; ++i) {
-    // A triangle outside the region may have any numbers here. Numbers that do not fit become 0.
+    // For a triangle outside the region, numbers may not fit into 16 bits. They become 0.
     const WideLane a = *pixel_of[i];
     const WideLane fitting = select(a >= 0.0 && a <= WideLane(65535.0), a, 0.0);
     hn::Store(hn::DemoteTo(whole, fitting.v), whole, pixels[i]);
@@ -183,7 +183,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   }
 }
 
-/// Stores `lanes` proxies. A proxy is 28 floats; its lane of `found` holds them.
+/// Stores `lanes` proxies. found[i] holds number i of the 28 floats of each proxy, one per lane.
 HWY_INLINE void store_proxies(const WideLane (&found)[28], int lanes, Proxy* out) {
   static_assert(sizeof(Proxy) == 28 * sizeof(float));
   HWY_ALIGN float four[7][kWide][4];
@@ -198,7 +198,7 @@ HWY_INLINE void store_proxies(const WideLane (&found)[28], int lanes, Proxy* out
   }
 }
 
-/// Implements Fattener::fatten_inside (core/canvas/fatten.h) with this Fit.
+/// Implements Fattener::fatten_inside (core/canvas/fatten.h) for the type Fit.
 template <class Fit>
 HWY_INLINE void fatten_batch(const FattenBatch& batch) {
   HWY_ALIGN double in[kWide];

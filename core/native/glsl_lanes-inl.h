@@ -1,8 +1,8 @@
-// Lets a kernel file (*.glsl) compile for the lanes of a vector processor. `float` then stands for
-// Lane, a vector of floats with one pixel on each lane. Every operation rounds once on each lane,
-// as in core/base/glsl_shim.h, so the bits are the same. This file is compiled once for each
-// instruction set of Google Highway (hwy/foreach_target.h). Include a kernel between
-// `#define float Lane` and `#undef float`, as offsets/lanes.cpp does.
+// Lets a kernel file (*.glsl) compile for the lanes of a vector processor. `float` is then defined
+// as Lane, a vector of floats with one pixel on each lane. Every operation rounds once on each
+// lane, as in core/base/glsl_shim.h, so the bits are the same. Google Highway compiles this file
+// once for each instruction set (hwy/foreach_target.h). Include a kernel between `#define float
+// Lane` and `#undef float`, as in offsets/lanes.cpp.
 #if defined(FARCULL_NATIVE_GLSL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_GLSL_LANES_INL_H_
 #undef FARCULL_NATIVE_GLSL_LANES_INL_H_
@@ -17,7 +17,7 @@ namespace farcull::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A truth value for each lane of the tag D.
+/// A vector of truth values, one on each lane of the Highway tag D.
 template <class D>
 struct BoolOf {
   BoolOf() = default;
@@ -33,7 +33,7 @@ struct BoolOf {
   friend HWY_INLINE BoolOf operator!(BoolOf a) { return BoolOf(hn::Not(a.mask)); }
 };
 
-/// A number for each lane of the tag D.
+/// A vector of numbers, one on each lane of the Highway tag D.
 template <class D>
 struct LaneOf {
   LaneOf() = default;
@@ -50,8 +50,8 @@ struct LaneOf {
   friend HWY_INLINE BoolOf<D> operator>(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Gt(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator<=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Le(a.v, b.v)); }
   friend HWY_INLINE BoolOf<D> operator>=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Ge(a.v, b.v)); }
-  // min is b < a ? b : a, and max is a < b ? b : a, even for zeros and NaNs. x86 has an instruction
-  // for each function, with the operands exchanged.
+  // min(a, b) is b < a ? b : a, and max(a, b) is a < b ? b : a, even for zeros and NaNs. The x86
+  // instructions give these results if their operands are exchanged.
   friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
     return LaneOf(hn::Min(b.v, a.v));
@@ -70,13 +70,13 @@ struct LaneOf {
   friend HWY_INLINE LaneOf sqrt(LaneOf a) { return LaneOf(hn::Sqrt(a.v)); }
 };
 
-using Plain = float;  // the type float where `float` stands for Lane
+using Plain = float;  // the type float in files that define `float` as Lane
 using LaneTag = hn::CappedTag<float, 16>;
 using LaneVector = hn::Vec<LaneTag>;
 using Lane = LaneOf<LaneTag>;
 using Bool = BoolOf<LaneTag>;
 HWY_INLINE Lane select(Bool c, Lane a, Lane b) { return Lane(hn::IfThenElse(c.mask, a.v, b.v)); }
-/// Returns the value of the lanes. Precondition: all lanes have the same value.
+/// Returns the common value of the lanes. Precondition: all lanes have the same value.
 HWY_INLINE bool of_all(Bool c) { return hn::AllTrue(LaneTag(), c.mask); }
 
 struct vec2 {
@@ -86,9 +86,9 @@ struct vec4 {
   Lane x, y, z, w;
 };
 
-// Lanes of doubles, for source files that compute in double (offsets/fit.inl). In such a file
-// `double` stands for WideLane, and each lane holds one triangle.
-using PlainDouble = double;  // the type double where `double` stands for WideLane
+// Lanes of doubles, for source files that compute in double (offsets/fit.inl). Such a file defines
+// `double` as WideLane, and each lane holds one triangle.
+using PlainDouble = double;  // the type double in files that define `double` as WideLane
 using WideTag = hn::CappedTag<double, 8>;
 using NarrowTag = hn::Rebind<float, WideTag>;
 using Wide = hn::Vec<WideTag>;
@@ -98,7 +98,7 @@ constexpr int kWide = static_cast<int>(hn::MaxLanes(WideTag()));
 HWY_INLINE WideLane select(WideBool c, WideLane a, WideLane b) {
   return WideLane(hn::IfThenElse(c.mask, a.v, b.v));
 }
-/// Returns the float nearest to each lane.
+/// Rounds each lane to the nearest float.
 HWY_INLINE WideLane nearest(WideLane a) {
   return WideLane(hn::PromoteTo(WideTag(), hn::DemoteTo(NarrowTag(), a.v)));
 }
@@ -110,7 +110,7 @@ struct dvec3 {
 }  // namespace farcull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-// Macros that kernels use, for lanes; core/base/glsl_shim.h has the same names for scalars.
+// The macros of kernels, for lanes. core/base/glsl_shim.h defines the same names for scalars.
 #undef FAR_OUT
 #undef FAR_INOUT
 #undef FAR_PRECISE

@@ -1,4 +1,4 @@
-// Tells Highway's table of functions which entry to use.
+// Selects the entry of Highway's function table, which has one entry for each instruction set.
 #include "core/native/canvas.h"
 
 #include <hwy/highway.h>
@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// Returns the instruction sets that were compiled and that the processor has, the best first. In
-// Highway's masks, a lower bit stands for a better instruction set.
+// Returns the instruction sets that were compiled and that the processor supports, the best first.
+// In Highway's masks, a lower bit means a better instruction set.
 std::vector<std::int64_t> usable() {
   std::vector<std::int64_t> found;
   const std::int64_t both = hwy::SupportedTargets() & HWY_TARGETS;

@@ -1,9 +1,9 @@
 // Draws elements in blocks of pixels, one pixel on each lane. A fragment's depth is stored, or
-// compared with the buffer to answer Verb::ask. A block is 4 pixels wide if there are 4 lanes or
-// more, since most proxies are small. A solid's kernel draws proxies. It is a type with
-//   interval(c, s0, .., s4, entry, exit): the solid's solid_interval on lanes;
-//   nearest(solid): a depth (px) that no entry is before;
-//   farthest(solid): a depth (px) that no exit is behind.
+// compared with the buffer to test visibility (Verb::ask). With 4 lanes or more, a block is 4
+// pixels wide, since most proxies are small. Kernel, a template parameter, computes a solid on
+// lanes:
+//   interval(c, s0, .., s4, entry, exit): the solid's solid_interval;
+//   nearest(solid), farthest(solid): bounds of all entries and of all exits (px).
 #if defined(FARCULL_NATIVE_PROXIES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_PROXIES_INL_H_
 #undef FARCULL_NATIVE_PROXIES_INL_H_
@@ -31,8 +31,8 @@ constexpr int kBlockHeight = kLanes / kBlockWidth;
 static_assert(kLanes == 1 || kLanes % 4 == 0);
 static_assert(kBlockWidth <= kNativeOverhang && kBlockHeight <= kNativeOverhang);
 
-/// Load and store a block: kBlockHeight rows of kBlockWidth floats. Only its first `rows` rows
-/// belong to this thread. Other rows are not touched: a row of this thread is loaded instead.
+/// load_rows() and store_rows() access a block: kBlockHeight rows of kBlockWidth floats. Only its
+/// first `rows` rows belong to this thread. In place of other rows, a row of this thread is loaded.
 #if HWY_TARGET == HWY_SCALAR
 template <int kCount>
 HWY_INLINE LaneVector load_rows(const float* at, int, int) {
@@ -49,7 +49,7 @@ HWY_INLINE hn::Vec<hn::CappedTag<float, kCount> > load_rows(const float* at, int
   if constexpr (kCount <= 4) {
     return hn::LoadU(tag, at);
   } else {
-    constexpr int kHalf = kCount / 8;  // rows
+    constexpr int kHalf = kCount / 8;  // number of rows
     const float* const upper = rows > kHalf ? at + kHalf * stride : at;
     return hn::Combine(tag, load_rows<kCount / 2>(upper, stride, rows - kHalf),
                        load_rows<kCount / 2>(at, stride, rows));
@@ -70,7 +70,7 @@ HWY_INLINE void store_rows(hn::Vec<hn::CappedTag<float, kCount> > v, float* at, 
 }
 #endif
 
-/// Columns and rows of the lanes inside a block.
+/// Column and row of each lane inside a block.
 HWY_INLINE Lane lane_columns() {
   HWY_ALIGN static constexpr float kColumns[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   return Lane(hn::Load(LaneTag(), kColumns));
@@ -85,19 +85,19 @@ HWY_INLINE Lane lane_numbers() {
                                                    8, 9, 10, 11, 12, 13, 14, 15};
   return Lane(hn::Load(LaneTag(), kNumbers));
 }
-/// Bit i is the truth value of lane i.
+/// Returns the truth value of lane i as bit i.
 HWY_INLINE std::uint32_t bits_of(Bool c) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(LaneTag(), c.mask, bytes);
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-/// The depth map (depth_scale() in core/canvas/canvas.h) on lanes.
+/// Applies the depth map (depth_scale() in core/canvas/canvas.h) on lanes.
 HWY_INLINE Lane mapped_depth(const NativeJob& job, Lane z) {
   return min(max(Lane(0.5f) + z * Lane(job.scale), Lane(0.25f)), Lane(0.75f));
 }
 constexpr Plain kSteps24 = 16777215.0f;
-/// The value that the depth buffer holds for a mapped depth.
+/// Returns the value that the depth buffer holds for a mapped depth.
 HWY_INLINE Lane held_depth(const NativeJob& job, Lane mapped) {
   return job.fixed24 ? Lane(hn::Round((mapped * Lane(kSteps24)).v)) : mapped;
 }
@@ -112,8 +112,8 @@ HWY_INLINE bool already_seen(std::uint8_t* seen, std::uint32_t slot) {
   return std::atomic_ref<std::uint8_t>(seen[slot]).load(std::memory_order_relaxed) != 0;
 }
 
-/// Draws the covered fragments of depth z (px). Returns true if the verb is Verb::ask in a run, and
-/// a fragment is seen.
+/// Draws the covered fragments at depth z (px). Returns true if this is a visibility test
+/// (Verb::ask in NativeOutput::run) and a fragment is seen.
 HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, Lane z, float* at,
                                int rows) {
   const Lane old = Lane(load_rows<kLanes>(at, job.stride, rows));
@@ -127,8 +127,8 @@ HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, La
   return false;
 }
 
-/// Draws depth 0, the nearest, in all pixels of the job's rows. Returns true if the verb is
-/// Verb::ask in a run, and a fragment is seen.
+/// Draws depth 0, the nearest, in all pixels of the job's rows. Returns true if this is a
+/// visibility test (Verb::ask in NativeOutput::run) and a fragment is seen.
 inline bool take_everywhere(const NativeJob& job, Verb verb) {
   bool seen = false;
   for (int y = job.y0; y < job.y1; ++y) {
@@ -147,7 +147,7 @@ inline bool take_everywhere(const NativeJob& job, Verb verb) {
 }
 
 /// Calls visit(element, verb) for the draws of a job in order. visit returns true if the element is
-/// seen. Draws of Verb::ask are left out if their slot has been seen.
+/// seen. Skips visibility tests (Verb::ask) of a slot that has been seen.
 template <class Visit>
 HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   for (std::uint32_t s = 0; s < job.step_count; ++s) {
@@ -163,8 +163,8 @@ HWY_INLINE void for_draws(const NativeJob& job, const Visit& visit) {
   }
 }
 
-/// The edges of a proxy, each directed so that its inner side is known. A pixel centre is covered
-/// if it is outside no edge. docs/budget.md, "The canvas on the CPU", bounds the rounding errors.
+/// The edges of a proxy, directed counterclockwise. A pixel centre is covered if it lies on or left
+/// of all edges. docs/budget.md, "The canvas on the CPU", bounds the rounding errors.
 struct ProxyEdges {
   Plain x[4], y[4], dx[4], dy[4];
 
@@ -180,9 +180,9 @@ struct ProxyEdges {
       dy[i] = turn * (y[(i + 1) % 4] - y[i]);
     }
   }
-  /// Looks at kLanes adjacent blocks. True: the block may have a covered pixel. cx, cy: the lower
-  /// left pixel centre of the first block. The test enlarges each block by a pixel on each
-  /// side. Rounding errors are far smaller, so no block with a covered pixel is lost.
+  /// Tests kLanes adjacent blocks. True: the block may have a covered pixel. cx, cy: the lower left
+  /// pixel centre of the first block. The test enlarges each block by a pixel on each side.
+  /// Rounding errors are far smaller, so no block with a covered pixel is rejected.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();
     const Lane right = left + Lane(static_cast<Plain>(kBlockWidth + 1));
@@ -205,8 +205,8 @@ struct ProxyEdges {
 
 HWY_INLINE vec4 uniform(const std::array<Plain, 4>& s) { return {s[0], s[1], s[2], s[3]}; }
 
-/// Draws a proxy in the rows of the job. Returns true if the verb is Verb::ask in a run, and a
-/// fragment is seen.
+/// Draws a proxy in the rows of the job. Returns true if this is a visibility test (Verb::ask in
+/// NativeOutput::run) and a fragment is seen.
 template <class Kernel>
 HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const PixelRange& range,
                            Verb verb) {
@@ -214,8 +214,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
-  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). A block that this
-  // depth does not change is left out: the depth map is monotone, so no fragment would change it.
+  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). If it has no
+  // effect in a pixel, no fragment has an effect there, since the depth map is monotone.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const Plain half_width = 0.5f * static_cast<Plain>(job.width);
@@ -232,8 +232,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
       covered = covered && (verb == Verb::store ? bound < old : bound >= old);
     }
     if (!any(covered)) return false;
-    // The solid is read as late as here, because its twenty vectors fill all registers. Most blocks
-    // need no solid, since they return above.
+    // Loads the solid late, because its twenty vectors fill all registers. Most blocks return above
+    // and do not need the solid.
     Lane entry, exit;
     covered = covered && Kernel::interval({cx, cy}, uniform(s[0]), uniform(s[1]), uniform(s[2]),
                                           uniform(s[3]), uniform(s[4]), entry, exit);
@@ -259,9 +259,9 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   return false;
 }
 
-// The outlines decide most proxies. The other proxies wait, and are fitted and drawn in groups.
+// The outlines decide most proxies. The other proxies are fitted and drawn in groups.
 
-/// True if the proxy is seen in a pixel that it certainly covers.
+/// Returns true if the proxy is certainly seen, in the pixel that its outline names.
 HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
   if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
   Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
@@ -270,9 +270,9 @@ HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline)
   return job.touching ? depth >= old : depth > old;
 }
 
-/// Calls visit(at, rows, columns) for the blocks of a proxy's range in the job's rows, until a call
-/// returns true. Returns true if a call did. at: index of the block's first pixel in job.depth.
-/// rows, columns: their number from that pixel to the end of the range.
+/// Calls visit(at, rows, columns) for the blocks of `range` in the job's rows, until a call returns
+/// true. Returns true if there was such a call. at: index of the block's first pixel in job.depth.
+/// rows, columns: number of rows and columns from that pixel to the end of the range.
 template <class Visit>
 HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
@@ -287,15 +287,16 @@ HWY_INLINE Bool inside_block(int rows, int columns) {
   return lane_rows() < Lane(static_cast<Plain>(rows)) &&
          lane_columns() < Lane(static_cast<Plain>(columns));
 }
-/// True if a proxy is so small that may_change() examines the blocks of its range.
+/// Returns true if the proxy is so small that may_change() examines the blocks of its range.
 HWY_INLINE bool is_small(const PixelRange& range) {
   constexpr int kMostBlocks = 4;  // in a row and in a column
   return range.x1 - range.x0 <= kMostBlocks * kBlockWidth &&
          range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
 }
 
-/// False if the proxy changes no pixel: neither its nearest depth (Verb::store) nor its farthest
-/// (Verb::ask) would change a pixel of its range.
+/// Returns false if drawing the proxy has no effect. For Verb::store, its nearest depth then
+/// changes no pixel of its range. For Verb::ask, its farthest depth is then seen in no pixel of its
+/// range.
 HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
   if (!is_small(outline.range)) return true;
   const Lane bound = held_depth(
@@ -307,7 +308,7 @@ HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Ve
   });
 }
 
-/// Proxies of one step that their outlines did not decide.
+/// Collects the proxies of one step that their outlines did not decide, and draws them.
 template <class Kernel>
 class WaitingProxies {
  public:
@@ -363,12 +364,12 @@ class WaitingProxies {
   int count_ = 0;
 };
 
-/// A few consecutive draws, mostly neighbours on a mesh.
+/// A few consecutive draws, usually of neighbouring triangles of a mesh.
 struct DrawRun {
   std::uint32_t first, count;
 };
-/// Reads into the cache what the three runs after `now` need. Sorted runs lie anywhere in memory.
-/// The draws, their outlines and their triangles are read in this order, each one call later.
+/// Prefetches data of the next three runs, since sorted runs are scattered in memory. Successive
+/// calls prefetch first the draws of a run, then the draws' outlines, then the draws' triangles.
 HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& runs,
                               std::size_t now) {
   const Drawables& from = *job.drawables;
@@ -390,9 +391,9 @@ HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& 
       hwy::Prefetch(&from.batch.scene->triangles[from.sources[element]]);
   });
 }
-/// Cuts the draws of a store step into runs and sorts the runs, the nearest first. Any order leaves
-/// the same depths. In this order, most draws that lie behind others change nothing. Leaves out
-/// runs without a pixel in the job's rows.
+/// Divides the draws of a store step into runs and sorts the runs, the nearest first. Any order
+/// leaves the same depths. In this order, most hidden draws have no effect and are skipped. Leaves
+/// out runs without a pixel in the job's rows.
 inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
   constexpr std::uint32_t kRun = 16, kBuckets = 512;
   const std::uint32_t runs = (step.count + kRun - 1) / kRun;

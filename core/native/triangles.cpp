@@ -1,7 +1,6 @@
-// Snapped corners and edge functions are integers, which doubles hold exactly. So it is certain
-// whether a pixel centre is inside, outside or on an edge. It is certain, too, whether a pixel's
-// square meets a triangle. If they do not meet, they are separated along an axis of the pixel or
-// the normal of an edge.
+// Draws raw triangles. Snapped corners and edge functions are integers, which doubles hold exactly.
+// So comparing a pixel centre with an edge is exact. Comparing a pixel's square with a triangle is
+// exact, too: if they are disjoint, an axis of the pixel or the normal of an edge separates them.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -26,10 +25,10 @@ HWY_INLINE Wide columns() {
 }
 
 /// The corners of a triangle, counterclockwise, in subpixels from the window's lower left corner.
-/// place: their mapped depths.
+/// place: the mapped depths of the corners.
 struct SnappedTriangle {
   double x[3], y[3], place[3];
-  double area = 0;  // doubled, in square subpixels; if 0, only `conservative` draws it
+  double area = 0;  // twice the area, in square subpixels; 0: only `conservative` draws it
 
   HWY_INLINE SnappedTriangle(const NativeJob& job, const std::array<float, 12>& t) {
     for (int i = 0; i < 3; ++i) {
@@ -48,8 +47,8 @@ struct SnappedTriangle {
   }
 };
 
-/// Draws into the covered pixels among the kWide pixels from `at` on. Returns true if the verb is
-/// Verb::ask in a run, and a fragment is seen.
+/// Draws the covered pixels among the kWide pixels from `at` on. Returns true if this is a
+/// visibility test (Verb::ask in NativeOutput::run) and a fragment is seen.
 HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<WideTag> covered,
                          float* at) {
   const NarrowTag narrow;
@@ -68,7 +67,7 @@ HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<W
 }
 
 /// Draws an element in the rows of the job. kTouched: the triangle has a fragment in every pixel
-/// that it touches. Returns what take_row() returns.
+/// that it touches. Returns true if take_row() returns true for a part of a row.
 template <bool kTouched>
 HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
@@ -98,7 +97,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
                                   hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        // The edge function at a corner of a pixel exceeds that at its centre by at most this.
+        // Upper bound of the edge function's increase from a pixel's centre to its corners.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
         const Wide least = hn::Set(wide, -reach);
         const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge owns its points

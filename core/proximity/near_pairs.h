@@ -44,8 +44,8 @@ struct SettledPair {
   double distance = 0;  // world units; at least the exact distance; 0 only if the triangles meet
   std::function<double(std::uint32_t)> reach, start;  // empty if the distance is 0
 };
-/// Returns the nearest of the given pairs, by exact arithmetic. Searches call it if bounds in
-/// doubles cannot decide. The given pairs are sorted. Must allow calls from several threads at
+/// Returns the nearest of the given pairs, by exact arithmetic. Searches call this function if
+/// bounds in doubles cannot decide. The given pairs are sorted. Several threads may call it at
 /// once.
 using Settle = std::function<SettledPair(std::span<const TrianglePair>)>;
 
@@ -56,9 +56,9 @@ struct NearPairs {
   /// Some pair of triangles of these objects is at most this far apart (world units). Infinite if
   /// no pair is within the limit of the search.
   double upper = std::numeric_limits<double>::infinity();
-  /// Has all pairs at the least distance, if that is at most the limit of the search. But if
-  /// triangles meet, or if the trees have a Settle, only the first of these pairs is sure to be
-  /// here. Sorted, distinct.
+  /// Has all pairs at the least distance, if this distance is at most the limit of the search. If
+  /// triangles meet, or if the trees have a Settle, the list may have only the first of these
+  /// pairs. Sorted, distinct.
   std::vector<TrianglePair> pairs;
 };
 
@@ -102,9 +102,9 @@ class ProximityTrees {
   /// near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// Does the same, but of other objects at the same distance only those with the lowest numbers
-  /// need be found. hints: in any order; if several hints name the same two objects, the first one
-  /// is used. If hints name k others of an object, their distances bound its answer from the start.
+  /// Does the same, except for ties: among other objects at equal distances, only those with the
+  /// lowest numbers need be found. hints: in any order; of several hints for the same two objects,
+  /// the first is used. If an object has k hints, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
@@ -118,7 +118,7 @@ class ProximityTrees {
   /// slightly farther apart. The triangles belong to two objects, or they are no neighbours and
   /// belong to one object marked `self`. Sorted, distinct. Throws std::logic_error if `within` is
   /// negative, infinite or NaN. Throws Error, which names `most`, if there are more than `most` +
-  /// `spare` pairs. Memory: some tens of bytes per pair, and for some thousands of other pairs.
+  /// `spare` pairs. Memory: some tens of bytes per pair, plus those of some thousands of pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {},
                                          std::size_t spare = 0) const;

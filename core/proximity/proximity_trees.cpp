@@ -108,7 +108,7 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
 // object (one leaf) is compared with the crowd. Comparing it with each other object would take
 // quadratic time.
 struct Crowd {
-  static constexpr std::size_t kOverlaps = 16;  // with more pairs of parts per object, it is used
+  static constexpr std::size_t kOverlaps = 16;  // used with more pairs of parts per object
 
   static bool is_small(const SceneTrees& trees, std::uint32_t object) {
     return trees.tree(object).leaves == 1;
@@ -215,7 +215,7 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
     if (hinted != begun.end() && hinted->objects == objects) {
       search = std::move(*hinted);
       search.limit = most;
-      search.counts = {};  // they were added above
+      search.counts = {};  // already added to `counts`
     } else {
       search = begin_search(trees, objects, most, nullptr, memory);
     }

@@ -69,11 +69,11 @@ constexpr double kGap = 16 * kUnit;
 constexpr double kDeterminant = 16 * kUnit;
 constexpr double kLeastSquare = 0x1p-900;
 constexpr double kAbsolute = 0x1p-900;
-/// Larger than the square of any gap between boxes. It is finite, and the gap to a missing box is
+/// Larger than the square of any gap between boxes. Finite, while the gap to a missing box is
 /// infinite.
 constexpr double kMostSquare = 1024;
 
-/// If the squared gap of two boxes is above the returned number, they are farther apart than
+/// If the squared gap of two boxes is above the returned number, the boxes are farther apart than
 /// `limit` (>= 0, may be infinite).
 inline double square_limit(double limit) {
   const double square = limit * limit * (1 + 16 * kUnit) + kAbsolute;
@@ -146,7 +146,7 @@ class SceneTrees {
   std::vector<std::uint32_t> place_;  // per leaf: an index in of_.ranges
   std::vector<BoxTree<double>> trees_;
   std::vector<Box> parts_;
-  std::vector<std::size_t> first_part_;  // per object, and then the number of all parts
+  std::vector<std::size_t> first_part_;  // per object: its first part; then the number of all parts
   BoxTree<double> objects_;
   std::vector<std::uint32_t> object_of_leaf_;
   UninitializedVector<WideBoxes<double>> blocks_;
@@ -172,10 +172,10 @@ struct alignas(64) BatchBounds {
 
 struct alignas(64) BlockCorners {
   CornerColumns corner;
-  WideBoxes<double> boxes;  // of the triangles
+  WideBoxes<double> boxes;  // boxes of the triangles
   std::array<std::uint32_t, kWide> triangle;
-  alignas(64) std::array<double, kWide> extreme;  // per triangle: its end along the direction that
-                                                  // faces the other object
+  alignas(64) std::array<double, kWide> extreme;  // per triangle: its largest or smallest
+                                                  // coordinate along the direction
   double most_extreme = 0;
   std::uint64_t direction = 0;  // the direction's number in SearchMemory; 0: none
   std::uint32_t leaf = UINT32_MAX;
@@ -226,11 +226,11 @@ struct Others {
   const SceneTrees* all;
   const Scene& scene;
   std::span<const std::uint32_t> owner;  // per triangle
-  std::uint32_t object;                  // the object whose nearest others are searched for
+  std::uint32_t object;                  // the search finds objects near this object
   std::size_t k;                         // how many others are searched for
   bool ties;                             // keeps all others that are as near as the k-th
-  /// Triangles from this number on need no search. k others with lower numbers certainly meet the
-  /// object.
+  /// Triangles from this number on need no search, since k other objects with only lower triangle
+  /// numbers certainly meet the object.
   std::uint32_t end = UINT32_MAX;
   /// The k least upper bounds with the numbers of their objects, sorted by bound, then by number.
   std::vector<std::pair<double, std::uint32_t>> nearest = {};
@@ -245,7 +245,7 @@ struct Others {
   double upper() const {
     return nearest.size() < k ? std::numeric_limits<double>::infinity() : nearest.back().first;
   }
-  /// Takes note that a triangle of the object and one of another object are at most `upper` apart.
+  /// Records that a triangle of the object and one of another object are at most `upper` apart.
   void add(const TrianglePair& pair, double upper);
 };
 
@@ -260,7 +260,7 @@ struct Search {
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
   std::shared_ptr<const Planes> planes;  // of `settled`, or of a pair that was settled before
   bool is_part = false;                  // part of a divided search; makes no planes
-  Vec3 direction = Vec3::Zero();         // between triangles at about `upper`; 0: none
+  Vec3 direction = Vec3::Zero();         // between two triangles about `upper` apart; 0: none
   std::vector<NodePair> open;            // pairs to examine, from the last to the first
   std::vector<KeptPair> kept;
   bool everything = false;       // true: keeps all pairs within the limit
@@ -286,8 +286,8 @@ struct SearchMemory {
 /// Begins a search. hint: may be null; otherwise a pair of triangles that may be near each other.
 Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
                     const TrianglePair* hint, SearchMemory& memory);
-/// Begins a search for the nearest others of an object. The search keeps all pairs whose other
-/// object can be among the nearest. Precondition: the object has triangles.
+/// Begins a search for the other objects nearest to an object. The search keeps all pairs whose
+/// other object can be among the nearest. Precondition: the object has triangles.
 Search begin_search(const SceneTrees& trees, std::uint32_t object, double limit, Others& others,
                     SearchMemory& memory);
 /// Continues until no pair of nodes is left, or until `most` pairs of leaves were examined.
@@ -299,7 +299,7 @@ constexpr std::size_t kLeafPairsAtOnce = 4096;
 /// Drops all kept pairs except the first of the nearest pairs, by exact arithmetic. Does nothing if
 /// the trees have no Settle. Precondition: some pair is kept.
 void settle(const SceneTrees& trees, Search& search);
-/// Returns a limit in world units, scaled and rounded up.
+/// Converts a limit from world units to scaled units, rounded up.
 double scaled_limit(const SceneTrees& trees, double within);
 /// Returns the answer of a finished search. Sets counts.kept.
 NearPairs answer(const SceneTrees& trees, Search& search);

@@ -35,7 +35,7 @@ class Searcher {
     Box both = a_.tree().box;
     both.add(b_.tree().box);
     origin_ = 0.5 * both.lo + 0.5 * both.hi;
-    // A computed difference errs by u of itself; near::kGap has room for that.
+    // A computed difference errs by u of itself; near::kGap covers this error.
     extent_ = (both.hi - origin_).cwiseMax(origin_ - both.lo);
     new_bound();
     new_direction();
@@ -104,7 +104,7 @@ class Searcher {
   // objects meet, the answer is the first pair of triangles that meets.
   bool comes_first(const NodePair& x, const NodePair& y) const {
     TrianglePair p = least(x), q = least(y);
-    if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // the other object decides
+    if (others_) std::swap(p.a, p.b), std::swap(q.a, q.b);  // orders by the other object first
     if (p != q) return p < q;
     return x.a != y.a ? x.a > y.a : x.b > y.b;
   }
@@ -117,7 +117,7 @@ class Searcher {
     if (search_.first.a == UINT32_MAX) return false;
     return search_.is_behind(lower_bound(at));
   }
-  // Returns a pair that no pair of triangles below the nodes comes before.
+  // Returns a pair at or before every pair of triangles below the nodes.
   TrianglePair lower_bound(const NodePair& at) const {
     const TrianglePair lowest = least(at);
     // If the objects are one, either node may hold the lower triangle.
@@ -146,8 +146,8 @@ class Searcher {
     return is(a[s], -b[t]) || (self_ && is(a[t], -b[s]));
   }
 
-  // Descends to the pair of leaves that seems nearest. Bounds the two triangles with the nearest
-  // corners there, which gives a first bound.
+  // Descends to the pair of leaves that seems nearest. In these leaves, bounds the distance of the
+  // two triangles with the nearest corners, to get a first bound.
   void descend() {
     NodePair at = search_.open.back();
     while (at.a_height > 0 || at.b_height > 0) {
@@ -215,13 +215,13 @@ class Searcher {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
 
-  // Adds the pairs of triangles of two leaves that may be near to the batch.
+  // Adds to the batch those pairs of triangles of two leaves that may be near.
   HWY_INLINE void compare_leaves(const NodePair& at) {
     BlockCorners& a = a_.load(memory_.a, at.a);
     BlockCorners& b = b_.load(memory_.b, at.b);
     const std::uint32_t asked = others_ ? asked_of(b) : 0xffff;
     if (asked == 0) return;
-    // These are copies, since add() below may change the direction.
+    // Copies both members, since add() below may change the direction.
     const bool directed = direction_ != 0;
     const double gap_limit = gap_limit_;
     if (directed) {
@@ -252,7 +252,7 @@ class Searcher {
     }
   }
 
-  // For a search with Others: returns the bits of the triangles of a leaf that it compares.
+  // Returns the bits of the triangles of a leaf that a search with Others compares.
   std::uint32_t asked_of(const BlockCorners& leaf) const {
     std::uint32_t out = 0;
     for (std::uint32_t k = 0; k < leaf.count; ++k) {
@@ -262,10 +262,10 @@ class Searcher {
     return out;
   }
 
-  // Drops pairs that are farther apart than the bound along a direction of one of their triangles:
-  // its normal, or a normal of an edge in its plane. Boxes along the axes separate slivers and
-  // large triangles poorly. A direction is tried for all pairs of a triangle at once, which takes
-  // less time than bounding two pairs.
+  // Drops pairs that are farther apart than the bound along a direction of one triangle: its
+  // normal, or a normal of an edge in its plane. Boxes along the axes separate slivers and large
+  // triangles poorly. A direction is tried for all pairs of a triangle at once, which takes less
+  // time than bounding two pairs.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with at least one and with at least two pairs

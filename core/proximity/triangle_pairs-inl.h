@@ -258,7 +258,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // The sense in which edge k of a passes edge j of b. It is the same with the edges exchanged.
+      // The sense in which edge k of a passes edge j of b; exchanging the edges changes nothing.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }

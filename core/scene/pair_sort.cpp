@@ -97,7 +97,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
   if (total == 0) return {};
   const std::uint64_t span = most - least + 1;
   std::vector<TrianglePair> out;
-  // Counting needs positions of 32 bits. With few pairs in a large range of a, sorting is faster.
+  // Counting needs positions of 32 bits. With few pairs in a large range of `a`, sorting is faster.
   if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());

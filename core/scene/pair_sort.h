@@ -13,8 +13,8 @@
 namespace farcull {
 
 /// Returns the pairs of all parts, sorted by (a, b), without repeats. With many pairs, the time is
-/// linear in their number plus the range of a. The answer does not depend on `threads` (0: one per
-/// core).
+/// linear in their number plus the range of `a`. The answer does not depend on `threads` (0: one
+/// per core).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
 /// Does the same, and empties the parts once it has read them, to free memory.
@@ -42,7 +42,7 @@ class GatheredPairs {
 /// pairs. So the work stays linear in the number of added pairs.
 class PairPool {
  public:
-  /// lists: number of threads that add at once. buffer: a number of pairs, as described above.
+  /// lists: number of threads that add at once. buffer: limits the pairs in all threads' lists.
   PairPool(std::size_t lists, std::size_t buffer);
 
   void add(std::size_t list, const TrianglePair& pair) {

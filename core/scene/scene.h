@@ -42,7 +42,7 @@ inline bool lies_within(const Box& inner, const Box& outer) {
   return (inner.lo.array() >= outer.lo.array() && inner.hi.array() <= outer.hi.array()).all();
 }
 
-/// Two objects as indices, a < b. If a == b, the object with itself.
+/// Two objects, as indices a < b; or an object and itself, if a == b.
 struct ObjectPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -178,13 +178,13 @@ class IgnoredObjects {
 
 /// What changed from the previous frame of a scene to this one.
 struct FrameChange {
-  bool same = false;  // true if number of vertices, triangles and objects are those of before
+  bool same = false;                    // true: vertex count, triangles and objects are unchanged
   std::vector<std::uint32_t> vertices;  // if `same`: the distinct vertices that moved
 };
 
 /// Finds the corners that moved between two frames of the same triangles and objects. A class that
-/// keeps results of a frame keeps the number frame() with them. It uses the results only in the
-/// next frame.
+/// keeps results of a frame also keeps the frame's number, frame(). It uses the results only if
+/// follows(number) is true.
 class MovedCorners {
  public:
   /// Begins the next frame. change: what changed; if null, the scene is compared with a copy of the
@@ -198,8 +198,8 @@ class MovedCorners {
   void notify(bool worth_while);
   /// Returns the number of the present frame, counted from 1.
   std::uint64_t frame() const { return frame_; }
-  /// True if this is the frame after `frame` and has the same triangles and objects. The functions
-  /// below then say what moved since that frame.
+  /// True if this is the frame after `frame` and has the same triangles and objects. Then the
+  /// functions below describe what moved since that frame.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
   /// True if some triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }
@@ -220,17 +220,17 @@ class MovedCorners {
 
   std::uint64_t frame_ = 0;
   bool known_ = false;
-  int waits_ = 0, next_waits_ = 1;  // frames that still wait; frames that will wait the next time
+  int waits_ = 0, next_waits_ = 1;  // frames left to wait; length of the next wait in frames
   std::optional<Copy> last_;
   // The triangles with vertex v: of_vertex_[first_of_[v]] to of_vertex_[first_of_[v + 1] - 1]. The
   // lists are empty until mark() makes them.
   std::vector<std::uint32_t> first_of_, of_vertex_;
   std::vector<std::uint8_t> triangle_moved_;  // valid only if a corner moved
-  std::vector<std::uint32_t> triangles_;      // triangles that moved
+  std::vector<std::uint32_t> triangles_;      // triangles with a corner that moved
 };
 
-/// Takes an evenly spaced sample of the pairs. True if in at least half of it no triangle moved. If
-/// there is no pair: true if nothing moved.
+/// Takes an evenly spaced sample of the pairs. True if no triangle moved in at least half of the
+/// sampled pairs. Without pairs, true if nothing moved.
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
 /// True if the determinant of the matrix exceeds its own rounding errors. r: row by row, finite.

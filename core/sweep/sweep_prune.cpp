@@ -1,5 +1,5 @@
 // BoxSweep sweeps the objects. Triangles that may be in a candidate pair are then put into columns
-// across the axis of their sweep, in the order of the last call. Each column is sorted and swept.
+// across the sweep axis, in the order of the last call. Each column is sorted and swept.
 #include "core/sweep/sweep_prune.h"
 
 #include <algorithm>
@@ -63,12 +63,12 @@ struct Key {
 
 }  // namespace
 
-// Why the pairs are right after an update. Along one axis, two boxes that are not empty overlap iff
-// each lower end stands before the other box's upper end. At equal coordinates lower ends stand
-// first. Insertion sort exchanges two ends iff their order changed. If two boxes begin to overlap,
-// they were apart along some axis, so a lower end of one box passes an upper end of the other. If
-// they cease to overlap, an upper end passes a lower end. At each such exchange the boxes of the
-// two frames are compared.
+// This is why update() is correct. Along an axis, two non-empty boxes overlap iff each lower end
+// comes before the other box's upper end. At equal coordinates, lower ends come first. Insertion
+// sort exchanges two ends iff their order changed. If two boxes begin to overlap, they were apart
+// along some axis, so a lower end of one box passes an upper end of the other. If they cease to
+// overlap, an upper end passes a lower end. At each such exchange the boxes of the two frames are
+// compared.
 const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   swaps_ = 0;
   std::vector<std::uint32_t> present;
@@ -151,7 +151,7 @@ SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes
   fill_columns(boxes);
   const std::uint64_t swaps = counts.swaps;
   const std::vector<TrianglePair> found = sweep_columns(counts);
-  // The columns begin in the order of order_. Many moves in the columns show that it is outdated.
+  // The columns begin in the order of order_. Many moves show that order_ is outdated.
   if (counts.swaps - swaps > items_.size()) {
     sort_order();
     ++counts.sorts;
@@ -175,7 +175,7 @@ void SweepPrune::forget() {
 /// Finds the triangles that may be in a candidate pair. The partners of a triangle are the objects
 /// whose boxes meet the box of its object. A triangle survives in three cases:
 /// - its box meets the box of a partner,
-/// - none of the first kTries partners that were compared meets it,
+/// - kTries partners were compared, and none meets the box,
 /// - its object is `self`.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
@@ -226,8 +226,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep. Along it, boxes are shortest relative to the extent of all boxes.
-/// It changes only if another axis is clearly better, since a change loses the sorted order.
+/// Chooses the axis of the sweep. Along this axis, boxes are shortest relative to the extent of all
+/// boxes. It changes only if another axis is clearly better, since a change loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();
@@ -324,7 +324,8 @@ void SweepPrune::fill_columns(std::span<const Box> boxes) {
   for (const Item& item : items_) for_columns(item.range, [this](std::size_t c) { ++starts_[c]; });
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   entries_.resize(total);
-  for (std::size_t i = items_.size(); i-- > 0;) {  // backwards: starts_ turns from ends to starts
+  // Goes backwards: lowers each starts_[c] from the end of column c to its start.
+  for (std::size_t i = items_.size(); i-- > 0;) {
     for_columns(items_[i].range, [&](std::size_t c) { entries_[--starts_[c]] = items_[i]; });
   }
 }

@@ -10,8 +10,8 @@
 // order along that axis is kept between frames.
 //
 // Reliable: no pair of closed boxes that overlap is lost, since doubles are only compared. The kept
-// order changes no answer, but the time and the counts of swaps and sorts. Two calls may be about
-// different scenes.
+// order affects the time and the counts of swaps and sorts, but no answer. Each call may get a
+// different scene.
 #pragma once
 
 #include <array>
@@ -66,7 +66,7 @@ class BoxSweep {
 
 /// Counts of what remains after culling, and of the work.
 struct SweepPruneCounts {
-  std::uint64_t objects = 0;         // in object_pairs, or `self` with 2 triangles or more
+  std::uint64_t objects = 0;         // objects in object_pairs, or `self` with 2 or more triangles
   std::uint64_t object_pairs = 0;    // pairs of objects whose boxes overlap
   std::uint64_t triangles = 0;       // triangles in a candidate pair
   std::uint64_t triangle_pairs = 0;  // candidates
@@ -108,7 +108,7 @@ class SweepPrune {
     double lo[3];
     double hi[3];
     std::uint32_t triangle;
-    std::uint32_t group;  // two triangles of one group are no candidate
+    std::uint32_t group;  // two triangles of one group are no candidate pair
     Range range;
   };
 
@@ -122,7 +122,7 @@ class SweepPrune {
   void sort_order();
 
   BoxSweep objects_;
-  std::array<int, 3> axes_ = {0, 1, 2};  // the axis of the sweep of triangles, then the others
+  std::array<int, 3> axes_ = {0, 1, 2};  // the triangles' sweep axis, then the other two axes
   // Triangles in the order of the last sort along axes_[0].
   std::vector<std::uint32_t> order_;
 

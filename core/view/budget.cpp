@@ -28,7 +28,7 @@ double Budget::radius() const {
   double sum = 0;
   for (const BudgetTerm& term : terms()) sum += term.px;
   // Six additions of rounded terms err by less than 2^-49 of the sum. The factor covers these
-  // errors and makes the inequality strict.
+  // errors, so that the result is strictly greater than the sum.
   return sum * (1 + 0x1p-40);
 }
 
@@ -36,16 +36,17 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   const double half = 0.5 * viewport;  // M, the largest |coordinate| relative to the centre
   Budget b;
   b.sampling = kSqrt2 / 2;
-  // Rounding a corner to the nearest float errs by kUnit / 2 of `half`. The doubles before err by
-  // less. On the CPU, edges of a proxy are compared with pixel centres in floats, which adds 3.01
-  // kUnit of `half` (docs/budget.md, "The canvas on the CPU").
+  // Rounding a corner to the nearest float errs by at most kUnit / 2 of M. The computation in
+  // double before it errs by less. On the CPU, edges of a proxy are compared with pixel centres in
+  // floats, which adds 3.01 kUnit of M (docs/budget.md, "The canvas on the CPU").
   b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
-  // A coordinate errs by e = kMaxDoubleError, a point in the image plane by sqrt(2) e. The depth's
-  // error adds to the distance s = sqrt(2)/2 from the centre only to second order:
+  // A coordinate errs by e = kMaxDoubleError, and a point in the image plane by sqrt(2) e. The
+  // largest distance from a pixel's centre is s = sqrt(2)/2. The depth's error adds a second-order
+  // term:
   // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
-  // docs/budget.md, "vertex". Errors in units of kUnit, relative to M: product with 2/viewport (1),
-  // division by w (2.5), product with viewport/2 (1). Relative to M + viewport/2: sum with the
+  // docs/budget.md, "vertex". Errors in kUnit of M: product with 2/viewport (1), division by w
+  // (2.5), and product with viewport/2 (1). Error in kUnit of M + viewport/2: sum with the
   // viewport's centre (1). The factor 1 + 4 kUnit covers the products of these errors.
   b.vertex =
       limits.exact_samples ? 0 : kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);

@@ -1,6 +1,6 @@
-// The error budget: named terms in pixels. The radius of a fattened primitive has to exceed the sum
-// of the terms, so that the reliability lemmas hold on a real rasterizer. docs/budget.md derives
-// each term in a section with the term's name.
+// The error budget: named terms in pixels. The radius of a fattened primitive must exceed the sum
+// of the terms; then the reliability lemmas hold on a real rasterizer. For each term,
+// docs/budget.md has a section of the same name with the derivation.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 namespace farcull {
 
 struct BudgetTerm {
-  std::string name;  // the title of its section in docs/budget.md
+  std::string name;  // also the title of the term's section in docs/budget.md
   double px;
 };
 
-/// Each term bounds the length of a displacement in px. So if it bounds coordinates, it includes
-/// the square root of the dimension.
+/// Each term bounds the length of a displacement in px. If it is derived from bounds of
+/// coordinates, it includes the square root of the dimension.
 struct Budget {
-  double sampling = 0;  // the largest distance of a point of a pixel from the pixel's centre
+  double sampling = 0;  // largest distance of a point of a pixel from the pixel's centre
   double input = 0;     // rounding of proxy corners from double to float32
   double double_ = 0;   // rounding of the affine map and of clipping, in double
-  double vertex = 0;    // rounding of vertex stage, division by w = 1 and viewport transform
+  double vertex = 0;    // rounding of vertex stage, division by w = 1, viewport transform
   double snap = 0;      // snapping of window coordinates
   double offset = 0;    // rounding of the offset: zero, since offsets round outward
 
@@ -30,13 +30,13 @@ struct Budget {
   double radius() const;
 };
 
-/// Returns the budget of one view. viewport: the larger side of the viewport in px. Every drawn
-/// |coordinate| is at most viewport / 2.
+/// Returns the budget of one view. viewport: the larger side of the viewport in px. Every
+/// |coordinate| that is drawn is at most viewport / 2.
 Budget budget_for(const RasterLimits& limits, int viewport);
 
-/// Returns the published radius in px, which fails on real rasterizers: half the diagonal of a
-/// pixel, 1/2 sqrt(dx^2 + dy^2 + dz^2). dx = dy = 1 px; dz is the smallest step of the depth buffer
-/// in px (Govindaraju, Lin, Manocha 2004, section 4).
+/// Returns the radius in px that was published (Govindaraju, Lin, Manocha 2004, section 4). It is
+/// half the diagonal of a pixel, 1/2 sqrt(dx^2 + dy^2 + dz^2), with dx = dy = 1 px. dz is the
+/// smallest step of the depth buffer in px. This radius fails on real rasterizers.
 double published_radius(double depth_step);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
 // A box join finds the partners of each object: the objects whose boxes overlap its box. A triangle
-// takes part if its box meets the box of a partner of its object.
+// takes part if its box overlaps the box of a partner of its object.
 #include "core/view/regions.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ Regions find_regions(const Scene& scene, const RegionRules& rules) {
 
   std::vector<std::uint32_t> objects(scene.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
-  // box_join() joins objects as if they were triangles; each object is its own owner.
+  // box_join() also works on objects. Here each object is one item and its own owner.
   std::vector<std::vector<std::uint32_t>> partners(objects.size());
   for (const TrianglePair& pair : box_join(out.object_boxes, objects, objects)) {
     partners[pair.a].push_back(pair.b);

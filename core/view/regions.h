@@ -1,4 +1,4 @@
-// Finds, by boxes, the places where objects of a scene can meet, and the triangles that can meet
+// Uses boxes to find the places where objects of a scene can meet, and the triangles that can meet
 // another object.
 #pragma once
 
@@ -20,28 +20,28 @@ struct Regions {
 /// If at most this many triangles remain, further views and finer offsets are left out. Exact tests
 /// of these triangles take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// With fewer objects, no object is tested as a whole. Such a test draws all triangles twice, and
-/// among few overlapping objects, one seldom hides all of another.
+/// With fewer objects, no object is tested as a whole. Such a test draws all triangles twice. Among
+/// few overlapping objects, one object seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
 /// A further round follows if the last round culled at least 1/kWorthARound of its triangles. A
-/// round takes about as long as exact tests of all its triangles, so it must cull a good part
-/// of them (docs/methods.md, "What a run leaves out").
+/// round takes about as long as exact tests of all its triangles. So it must cull a large part of
+/// them (docs/methods.md, "What a run leaves out").
 constexpr std::uint32_t kWorthARound = 8;
 
 struct RegionRules {
-  bool self = false;  // objects with Object::self are tested against themselves
-  bool full = false;  // every triangle takes part
+  bool self = false;  // tests objects with Object::self against themselves
+  bool full = false;  // lets every triangle take part
 };
 
-/// Finds one place for each pair of objects whose boxes overlap: the common part of the boxes. With
-/// rules.self, the box of an object with Object::self and two or more triangles is a place, and all
-/// triangles of the object take part. With rules.full, every triangle takes part, and the box of
-/// the scene is the place if there is no other.
+/// Finds one place for each pair of objects whose boxes overlap: the intersection of the boxes.
+/// With rules.self, the box of an object with Object::self and two or more triangles is also a
+/// place, and all its triangles take part. With rules.full, every triangle takes part. The scene's
+/// box is then the place if there is no other place.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
 /// Returns the regions for these pairs. triangles: the triangles of the pairs. places: one for each
-/// object that owns the first triangle of a pair. The place contains the common parts of the boxes
-/// of its pairs. So every common point of a pair is in a place.
+/// object that owns the first triangle of a pair. A place contains the intersections of the boxes
+/// of all pairs of its object. So every common point of a pair is in a place.
 Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Fits windows around the images of boxes, and clips triangles by Sutherland and Hodgman's
-// algorithm against the six planes of a window's region.
+// Fits windows around the images of boxes. Clips triangles to the six planes of a window's region
+// by the algorithm of Sutherland and Hodgman.
 #include "core/view/view.h"
 
 #include <Eigen/Geometry>
@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// Returns the image axes for a depth direction. If that is a coordinate axis, the image axes are
-// the other two coordinate axes, so that the map multiplies exactly.
+// Returns the axes of a view along `depth`. If `depth` is a coordinate axis, the image axes are the
+// other two coordinate axes, so that the map multiplies exactly.
 Eigen::Matrix3d rows_for(const Vec3& depth) {
   Eigen::Matrix3d rows;
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,8 +30,8 @@ Eigen::Matrix3d rows_for(const Vec3& depth) {
   return rows;
 }
 
-// Returns a box that contains the image of a box under map * (x - origin). It is enlarged by the
-// rounding errors of the computed image. Raises `error` to the largest of these errors.
+// Returns a box that contains the image of `box` under map * (x - origin). The box is enlarged by
+// the rounding errors of the computation. Raises `error` to the largest of these errors.
 Box image(const Eigen::Matrix3d& map, const Vec3& origin, const Box& box, double& error) {
   const Vec3 from = box.lo - origin;
   const Vec3 to = box.hi - origin;
@@ -114,11 +114,11 @@ std::vector<View> parse_views(const std::string& text) {
 
 PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // The subtraction is rounded once, so its error is relative to |x - origin|, not to |x|. Scenes
-  // far from the world's origin lose no precision. Three products and two additions follow.
-  // kMapRounding covers the roundings and the cross terms (docs/budget.md, "double"). A product
-  // that underflows adds an error of at most 2^-1075.
+  // far from the world's origin therefore lose no precision. Three products and two additions
+  // follow. kMapRounding covers the roundings and the cross terms (docs/budget.md, "double"). A
+  // product that underflows adds an error of at most 2^-1075.
   const Vec3 d = x - window.origin;
-  // The order of the sums is that of core/native/fatten-inl.h.
+  // The sums have the same order as in core/native/fatten-inl.h.
   PixelPoint out{{}, 0};
   double bound = 0;
   for (int row = 0; row < 3; ++row) {
@@ -126,7 +126,7 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
                  c = window.map(row, 2) * d[2];
     out.p[row] = (a + b) + c;
     const double sum = (std::abs(a) + std::abs(b)) + std::abs(c);
-    if (!(sum <= bound)) bound = sum;  // true if `sum` is larger or NaN
+    if (!(sum <= bound)) bound = sum;  // also true if `sum` is NaN
   }
   bound = kMapRounding * bound + kMapUnderflow;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
@@ -157,16 +157,16 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
                 .hi = {}};
   double error = 0;
 
-  // Centres the window on the middle of the regions' image. In an oblique view, that is not the
-  // image of the centre of `world`.
+  // Centres the window on the middle of the image of the regions. In an oblique view, this is not
+  // the image of the centre of `world`.
   const Box rough = image(view.rows, window.origin, regions, error);
   if (!std::isfinite(error)) return std::nullopt;
   const bool axis_aligned = (view.rows.array() == 0).count() == 6;
   if (!axis_aligned) window.origin += view.rows.transpose() * (0.5 * rough.lo + 0.5 * rough.hi);
 
-  // If the image is flat, a pixel still needs a positive size. At any resolution, a pixel is at
-  // least 2^-45 of the largest coordinate. So the window's centre, a rounded double, lies within
-  // 1/16 px of the middle of the image, and the window keeps to its limit of size.
+  // Even if the image is flat, a pixel needs a positive size. At any resolution, a pixel is at
+  // least 2^-45 of the largest coordinate. So rounding the window's centre to doubles moves it by
+  // at most 1/16 px, and the window does not exceed its maximum size.
   const Box unit = image(view.rows, window.origin, regions, error);
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
   const double extent = std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
@@ -178,7 +178,7 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   error = 0;
   const Box px = image(window.map, window.origin, regions, error);
   if (!(error <= kMaxDoubleError)) return std::nullopt;
-  // 2^-40 makes up for the rounding of these sums, as far as `error` does not cover it.
+  // 2^-40 covers the part of the rounding errors of these sums that `error` does not cover.
   window.lo = px.lo.array() - (1 + 0x1p-40);
   window.hi = px.hi.array() + (1 + 0x1p-40);
   const auto side = [&](int i) {
@@ -193,8 +193,8 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
 namespace {
 
 // Sets `out` to the part of `in` with sign * p[axis] <= sign * plane. Returns false if `out` has no
-// room for that. A convex polygon gains at most one corner. But if rounding puts the corners of a
-// needle along the plane on either side of it, every change of sides adds a corner.
+// room for it. A convex polygon gains at most one corner. But rounding can put corners of a thin
+// triangle on alternating sides of the plane. Each change of sides then adds a corner.
 bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign) {
   const int room = static_cast<int>(out.corners.size());
   out.count = 0;
@@ -206,7 +206,7 @@ bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign
     if (out.count + a_inside + (a_inside != b_inside) > room) return false;
     if (a_inside) out.corners[out.count++] = a;
     if (a_inside != b_inside) {
-      // Starts at the inner end, so that two triangles with a common edge get the same point.
+      // Interpolates from the inner end: two triangles with a common edge get the same point.
       const Vec3& from = a_inside ? a : b;
       const Vec3& to = a_inside ? b : a;
       const double t = (plane - from[axis]) / (to[axis] - from[axis]);
@@ -251,9 +251,9 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
     }
     if (patch.count == 0) break;
   }
-  // Each cut displaces its new corners by at most kCutRounding * largest along each axis. t has
-  // three roundings, multiplied by |to - from| <= 2 * largest. The difference, the product and the
-  // sum then round once each (docs/budget.md, "Clipping and the fan").
+  // Each cut displaces its new corners by at most kCutRounding * largest along each axis. The three
+  // roundings of t are multiplied by |to - from| <= 2 * largest. The difference, the product and
+  // the sum are then rounded once each (docs/budget.md, "Clipping and the fan").
   patch.error += patch.cuts * kCutRounding * largest;
   return patch;
 }

@@ -1,6 +1,6 @@
 // Processes blocks of cells level by level. Each block has a list of the triangles that can matter
-// to its cells. Its parts, on the next level, get a shorter list. A level reads only results of the
-// levels above, so the answer does not depend on the number of threads.
+// to its cells. The block's parts, on the next level, get a shorter list. A level reads only
+// results of the levels above, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace farcull::voronoi {
 inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// The cells from .. to - 1 along each axis. Its triangles are level.triangles[first] and the next
-// count - 1.
+// The cells from .. to - 1 along each axis. The block's triangles are level.triangles[first] and
+// the next count - 1.
 struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
@@ -135,7 +135,7 @@ inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Processes the blocks of the grid level by level. Calls form.look() for each block of a level,
+/// Processes the blocks of the grid level by level. For each block of a level, calls form.look(),
 /// which adds blocks to the next level. Then calls form.add() with the Form::Found of each chunk of
 /// the level, in order.
 template <class Form>

@@ -7,7 +7,7 @@
 namespace farcull {
 namespace {
 
-// The grid rounds outward.
+// Returns the next larger double, since the grid rounds outward.
 double up(double x) { return std::nextafter(x, HUGE_VAL); }
 
 }  // namespace
@@ -29,8 +29,8 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
   const double largest =
       std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
   if (!(largest > 0)) return out;
-  // Now the largest coordinate is in [1, 2). A coordinate that becomes subnormal errs by less than
-  // 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
+  // 2^exponent scales the largest |coordinate| into [1, 2). A coordinate that becomes subnormal
+  // errs by less than 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
   out.exponent = -std::ilogb(largest);
   Vec3 extent;
   for (int k = 0; k < 3; ++k) {

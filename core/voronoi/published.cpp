@@ -110,7 +110,7 @@ class Published {
 
   Found nothing() const { return {}; }
 
-  // Computes the distances from one cell of the block. They bound the distances from other cells.
+  // Computes the distances from the centre of one cell. They bound the distances from other cells.
   void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
             Found& found, Level& below) const {
     GridPoint centre;

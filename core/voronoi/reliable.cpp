@@ -1,8 +1,8 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. The
-// first: an end is hardly farther from the cell than the nearest triangle. The second: an end is at
-// most half the length of the segment from its middle. Each point of space gives an upper bound of
-// that length.
+// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. First:
+// from a block's centre, an end is farther than the nearest triangle by at most the block's
+// diagonal. Second: an end is half the segment's length from the middle. Each point of space gives
+// an upper bound of this length.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -107,14 +107,14 @@ class Reliable {
     }
   }
 
-  // An end of the object's shortest segment is at most this far from the point.
+  // An end of the object's shortest segment is at most this far from the block's centre.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // Returns the triangles that may hold an end. Empty if all of them belong to one object.
+  // Returns the triangles that may hold an end. Returns none if all of them belong to one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;
-    // The two largest limits, with their objects, of objects that may have an end here.
+    // The two largest limits and their objects, of the objects that may have an end in this list.
     std::array<std::pair<float, std::uint32_t>, 2> largest;
     largest.fill({-kInfinite, kNone});
     for (const Near& near : distances.objects()) {
@@ -168,7 +168,7 @@ class Reliable {
   const std::vector<GridTriangle>& triangles_;
   float error_, widening_;
   // For each object, an upper bound of its distance from the nearest other object, in units of the
-  // grid. Finished levels gave these bounds.
+  // grid. The bounds come from finished levels.
   std::vector<float> upper_;
   Level cells_;
 };

@@ -111,7 +111,7 @@ inline float part(float numerator, float denominator) {
   return t > 0 ? std::min(t, 1.0f) : 0.0f;
 }
 
-// The shortest vector n so far from a point of the triangle to c. square: its squared length.
+// The shortest vector n, of those added, from a point of the triangle to c. square: n . n.
 struct Shortest {
   GridPoint n;
   float square;
@@ -183,8 +183,8 @@ struct VoronoiCounts {
 /// The result of a form of the diagram. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
   /// Pairs of objects, sorted, distinct. In the published form, these are the two nearest objects
-  /// of some cell; of objects with equal distances in float, the first ones. In the reliable form,
-  /// they are the objects of `triangles`.
+  /// of some cell; if distances in float are equal, the objects with the lowest indices. In the
+  /// reliable form, they are the objects of `triangles`.
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
 

@@ -110,7 +110,7 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const auto words = [&](const TakeWord& take) { give_words(scene, take); };
     check_again(arguments, {arguments.certificate}, words, status);
   }
-  // The record is written last, so that there is none if the two checkers disagree.
+  // The record is written last, so that no record is written if the two checkers disagree.
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   return status;
 }
@@ -119,7 +119,6 @@ Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
   const std::string file = numbered(arguments.certificate, frame);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
-    // If the scene is a built-in motion, the missing certificate can be made.
     const std::vector<std::string>& names = arguments.scene.names;
     const bool motion = names.size() == 1 && is_builtin_scene(names[0]);
     const FrameRange& range = *arguments.frames;
@@ -253,7 +252,7 @@ class CheckCommand {
     to.pairs = pairs_.value_or("");
     if (frames_) to.frames = parse_frames(*frames_);
     if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-    // If the scene comes first and the certificate last, they are exchanged. The text of the file
+    // Exchanges the two if the scene comes first and the certificate last. The text of the file
     // shows whether it is a certificate.
     const auto is_certificate = [&](const std::string& path) {
       const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
@@ -268,7 +267,7 @@ class CheckCommand {
       to.certificate = std::move(to.scene.names.back());
       to.scene.names.pop_back();
     }
-    // If the first name is not that of a mesh, it is taken for a certificate.
+    // The first name is taken for a certificate unless it is that of a mesh.
     const bool mesh = has_mesh_extension(to.certificate);
     if (!pairs_ && mesh) {
       throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

@@ -1,5 +1,5 @@
-// Checks certificates of tiles one after the other, and whether the tiles cover the scene. The
-// sorted rows of all tiles are the list that is proved.
+// Checks certificates of tiles one after the other. Checks that the tiles cover the scene. The
+// sorted rows of all tiles are the proved list.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct CheckedTile {
   std::string file;
   Tile tile;
   double clearance = 0;
-  CheckResult result;  // `meeting` is emptied
+  CheckResult result;  // without its list `meeting`
   std::string pair;    // the pair that refutes the certificate, by its numbers in the scene
 };
 
@@ -65,7 +65,7 @@ std::string not_whole(const std::vector<CheckedTile>& tiles) {
                                          interval_text(tiles.back().tile));
 }
 
-// Returns how the file differs from the list. Empty if they are equal byte for byte.
+// Returns how the file differs from the list; empty if both are equal byte for byte.
 std::string other_list(const std::string& path, std::string_view list) {
   const std::string text = read_file(path, kMaxCheckedBytes);
   if (text == list) return "";

@@ -53,7 +53,8 @@ constexpr const char* kExamples =
 constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // limit for a file of --compare
 constexpr const char* kNoTriangles = "the mesh has no triangles";  // load_mesh() gives this reason
 
-// Reads the parts. Meshes without triangles become parts without triangles, behind other parts.
+// Reads the parts. Each mesh without triangles becomes an empty part. Empty parts follow all
+// others.
 Scene read_parts(SceneArguments files) {
   std::vector<std::string> empty;
   for (;;) {
@@ -166,8 +167,8 @@ class ClashCommand {
   }
 
  private:
-  // Returns the arguments, with each folder replaced by the mesh files in it and in its subfolders.
-  // Throws Error for a mesh file in a format that is not read, unless the folder has a readable
+  // Returns the arguments, with each folder replaced by the mesh files in the folder and its
+  // subfolders. Throws Error for a mesh file in an unknown format, unless the folder has a readable
   // mesh of the same part.
   SceneArguments parts() const {
     SceneArguments out = scene_;

@@ -104,7 +104,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
   const std::string text = error.what();
-  // Unknown words are reported first, since they may be the reason for other errors.
+  // Unknown words are reported first, since they may cause the other errors.
   const std::vector<std::string> words = app.remaining(true);
   if (!words.empty()) {
     const std::string& word = words.front();
@@ -226,8 +226,8 @@ int command_line(int argc, char** argv) {
   spell_parameters(option_word);
   // Keeps Mesa from warning about devices that it tries. farcull prints a message of its own.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
-  // The threads of llvmpipe may damage our memory (docs/drivers.md). No thread runs yet, so it is
-  // safe to change the environment.
+  // The threads of llvmpipe may corrupt memory of this process (docs/drivers.md). No thread runs
+  // yet, so it is safe to change the environment.
   ::setenv("LP_NUM_THREADS", "0", 0);
   const Interruptible interruptible;
   try {

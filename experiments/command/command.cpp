@@ -83,7 +83,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
     before += (before.empty() ? "" : " ") + command->get_name();
     command = found.front();
   }
-  // App::help() is no use here: it would describe the parsed command, which is `help`.
+  // App::help() cannot be used: it would describe the parsed command, which is `help`.
   return command->get_formatter()->make_help(
       command, before.empty() ? command->get_name() : before + " " + command->get_name(),
       CLI::AppFormatMode::Normal);
@@ -99,7 +99,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStandardOutput = "standard output";
 
-// Identifies a file. If it does not exist yet, device and inode are those of its folder.
+// Identifies a file. If the file does not exist yet, device and inode are those of its folder.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -116,7 +116,7 @@ fs::path made_by(fs::path path) {
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;  // this is `target` if it is absolute
+    path = path.parent_path() / target;  // the result is `target` if that is absolute
   }
   return path;
 }

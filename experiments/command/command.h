@@ -47,7 +47,7 @@ struct OptionRow {
   const char* type = "";
   std::string help;
   Need need = Need::may;
-  const char* group = "";  // its heading in the help; empty: the common heading
+  const char* group = "";  // heading of the option in the help; empty: the common heading
 };
 using Rows = std::vector<OptionRow>;
 inline Rows operator+(Rows first, const Rows& then) {
@@ -55,10 +55,11 @@ inline Rows operator+(Rows first, const Rows& then) {
   return first;
 }
 
-/// The end of a help text; a function is called when the help is printed.
+/// The end of a help text. If it is a function, it is called when the help is printed.
 using Footer = std::variant<const char*, std::string, std::function<std::string()>>;
 
-/// Declares a subcommand of `parent`, a command or the program. It lives as long as `parent`.
+/// Declares a subcommand of `parent`, a command or the program. The subcommand lives as long as
+/// `parent`.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer);
 /// Allows at most one of the subcommands of this command.
@@ -144,14 +145,14 @@ struct NamedFile {
 };
 
 /// Returns one file per frame if there is a range and the path has a place for a number. Otherwise
-/// returns the path.
+/// returns the path alone.
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
 /// Returns the files that load_scene() reads for these arguments or, with a range, FrameSource:
 /// - the scene file and its meshes, or the mesh files, a numbered file once per frame;
-/// - the meshes of mesh_folder() for a built-in scene that needs them, and if there are no
-///   arguments, which stands for all built-in scenes.
+/// - the meshes of mesh_folder() if a built-in scene needs them, or if there are no arguments (then
+/// for all built-in scenes).
 /// NamedFile::by is SCENE. A file that cannot be read is no error here.
 std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
                                    const std::optional<FrameRange>& range = {});
@@ -160,9 +161,9 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 /// by device and inode, with links followed.
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-/// Does the same as require_not_read(), and throws Error if two outputs are one file, even if it
-/// does not exist yet. The file behind standard output counts as an output. A terminal, /dev/null
-/// or another file that is not regular may be an output several times, but "-" only once.
+/// Calls require_not_read(). Also throws Error if two outputs are one file, even a file that does
+/// not exist yet. The file behind standard output counts as an output. A terminal, /dev/null or
+/// another file that is not regular may be an output several times, but "-" only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
 /// Writes text for people to standard output, with its long lines wrapped (text_table.h).
@@ -172,24 +173,25 @@ void print(const std::string& text);
 /// blanks. Replaces control characters, which paths may have.
 void complain(const std::string& message);
 
-/// Prints each line of take_reading_notes() once on standard error: what reading files left out.
+/// Prints on standard error what reading files left out: each line of take_reading_notes(), once.
 void say_notes();
 
 /// Calls load_scene() and say_notes(), and make_self() if `self` is set.
 Scene read_scene(const SceneArguments& arguments, bool self = false);
-/// Returns a function that gives the scene part by part (stream_scene()), and then does the same.
-/// The arguments must outlive the function.
+/// Returns a function that reads the scene part by part (stream_scene()), and calls say_notes(),
+/// and make_self() if `self` is set, for each part. The arguments must outlive the function.
 std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
     const SceneArguments& arguments, bool self);
 
-/// Does the same as complain(), in red on a terminal. For a broken guarantee.
+/// Prints a broken guarantee as complain() does, but in red on a terminal.
 void complain_broken(const std::string& message);
 
 /// Throws Error if there is nothing to test, since 0 pairs would look like a scene without
 /// collisions. command: a command line that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
-/// Throws Error if the scene has two objects or more, tests none against itself, and `ignored` and
-/// scene.ignored together have all pairs of objects. ignored: a result of in_order().
+/// Throws Error if no pair of objects is left to test: the scene has two objects or more, tests
+/// none against itself, and `ignored` and scene.ignored together have all pairs. ignored: a result
+/// of in_order().
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// Returns the command followed by the words of a scene, quoted for a shell.
 std::string command_with(const std::string& command, const SceneArguments& scene);
@@ -197,7 +199,7 @@ std::string command_with(const std::string& command, const SceneArguments& scene
 /// One line on standard error that each update overwrites. Nothing is printed without a terminal.
 class TerminalProgress {
  public:
-  /// first: is shown at once.
+  /// first: text that is shown at once.
   Progress callback(const char* first = nullptr);
   void clear();
   TerminalProgress() = default;
@@ -231,8 +233,8 @@ struct Outputs {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
-/// Returns the number that the text gives. Throws Error, "'TEXT' is WHAT" of the option, unless it
-/// is from `least` to `most`.
+/// Reads a number from `least` to `most`. Otherwise throws Error naming the option, with the reason
+/// "'TEXT' is WHAT".
 template <class Value>
 Value number_of(const char* option, const std::string& text, const std::string& what, Value least,
                 Value most, const std::string& remedy) {
@@ -240,11 +242,11 @@ Value number_of(const char* option, const std::string& text, const std::string& 
   if (value && *value >= least && *value <= most) return *value;
   throw Error(option, "'" + text + "' is " + what, remedy);
 }
-/// Returns the index of the text in `words`; 0 if it was not given. Throws Error as number_of()
-/// does if `words` lacks it.
+/// Returns the index of the text in `words`; 0 if the option was not given. Throws Error as
+/// number_of() does if `words` does not contain the text.
 std::size_t word_of(const char* option, const Text& text, const std::vector<std::string>& words,
                     const std::string& what, const std::string& remedy);
-/// Throws Error, which names the first option that was given, if one was given.
+/// Throws Error if any of the options was given. The error names the first of the given options.
 void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
                   const std::string& reason, const std::string& remedy);
 
@@ -308,10 +310,10 @@ struct CheckArguments {
   std::string json = {};   // a path; "": none; "-": standard output, in place of the text
   bool self = false;       // every object is tested against itself, as by run --self
   std::string pairs = {};  // the path of a list that `farcull run --pairs` wrote; "": none
-  std::optional<double> clearance = {};  // must be that of the certificate, if there is one
+  std::optional<double> clearance = {};  // must be the certificate's clearance, if any
   std::optional<FrameRange> frames = {};
   std::optional<FrameRange> tiles = {};  // the numbers of the tiles
-  bool verified = false;                 // calls check_again()
+  bool verified = false;                 // true: calls check_again()
 };
 
 /// Prints the verdict. With frames or tiles, prints a verdict for each, and one for all. Returns 0
@@ -323,26 +325,27 @@ constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
 
 Certificate read_certificate(const std::string& path);
 
-/// Replaces, line by line, characters that a terminal cannot show.
+/// Replaces characters that a terminal cannot show, line by line.
 std::string clean_lines(const std::string& text);
 
 /// Is called with each word of a scene: the words that scene_hash() hashes, in the same order.
 using TakeWord = std::function<void(std::uint64_t)>;
 
 /// Gives the certificates and the scene to `farcull-check-verified`, the checker that Coq has
-/// proved (verify/certificate/coq). It is in the folder of this program or in the PATH. Prints the
-/// SHA-256 of the files, then the proved checker's output, which is the same SHA-256 and a verdict.
-/// words: gives the words of the scene. status: the exit status by our own checker. Throws Error if
-/// the proved checker cannot be run, or if its verdict differs.
+/// proved (verify/certificate/coq). The checker is in the folder of this program or in the PATH.
+/// Prints the SHA-256 of the files, then the checker's output, which is the same SHA-256 and a
+/// verdict. words: gives the words of the scene. status: the exit status of our own checker. Throws
+/// Error if the proved checker cannot be run, or if its verdict differs.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
-/// Checks certificates of tiles one after the other. Memory: for the largest part of the scene, and
-/// the triangles that meet one tile. whole: true if the tiles must cover the scene, in order.
-/// Prints the verdict. Returns the exit status, as run_check() does.
+/// Checks certificates of tiles one after the other. Needs memory for the largest part of the
+/// scene, and for the triangles that meet one tile. whole: true if the tiles must cover the scene,
+/// in order. Prints the verdict. Returns the exit status, as run_check() does.
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
-/// Calls take() with all words of a scene; give_coordinates(), only with those of its coordinates.
+/// give_words() calls take() with all words of a scene, give_coordinates() only with those of its
+/// coordinates.
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
 
@@ -364,9 +367,9 @@ class PictureCommand {
   bool self_ = false, zoom_ = false;
 };
 
-/// Returns a line for each of these objects that is not closed, but would be closed with --weld.
-/// The line names the tolerance. At most three lines; none if the objects together have more than 4
-/// million triangles.
+/// Returns a line for each of these objects that is not closed but would be closed with --weld. The
+/// line names the tolerance. Returns at most three lines, and none if the objects together have
+/// more than 4 million triangles.
 std::string weld_lines(const Scene& scene, const std::vector<std::uint32_t>& objects);
 
 }  // namespace farcull

@@ -14,7 +14,7 @@
 namespace farcull {
 namespace {
 
-// Replaces this process by the Python program, which draws the CSV and exits with `status`.
+// Replaces this process by the Python program, which draws the CSV file and exits with `status`.
 void draw(const std::string& csv, const std::string& path, int status) {
   std::FILE* const rows = std::tmpfile();
   if (rows == nullptr || std::fwrite(csv.data(), 1, csv.size(), rows) != csv.size() ||

@@ -1,6 +1,6 @@
-// Writes the script that completes command lines of farcull in a shell. It has a table of the words
-// of each command, and of how to complete each value. A function in the script finds the command
-// among the words of the line, skips values of options, and reads the table.
+// Writes the script that completes command lines of farcull in a shell. The script has a table with
+// the words of each command, and with the way to complete each value. A function in the script
+// finds the command among the words of the line, skips values of options, and reads the table.
 #include <fmt/format.h>
 
 #include <algorithm>

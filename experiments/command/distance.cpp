@@ -53,8 +53,8 @@ std::string frame_row(long frame, const DistanceRecord& record) {
   return row + "\n";
 }
 
-// Returns the objects that are not closed. For these, no answer says whether another object is
-// inside.
+// Returns the objects that are not closed. The record cannot say whether such an object contains
+// another object.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {

@@ -1,4 +1,4 @@
-// Probes the native canvas and the device, and prints the findings. A probe of the native canvas
+// Probes the native canvas and the device, and prints the results. A probe of the native canvas
 // counts events that must not happen, so its bound is 0.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -173,9 +173,9 @@ Json probes_json(const std::vector<ProbeResult>& probes) {
   });
 }
 
-// Tests the kernels with each of lane_targets(). Counts answers that lose a part of the exact
-// solid, and answers that differ from those of the scalar kernel. Then counts violations of lemmas
-// 1 and 2 (LemmaRow). Restores the instruction set.
+// Tests the kernels with each of lane_targets(). Counts results that lose a part of the exact
+// solid, and results that differ from those of the scalar kernel. Then counts violations of lemmas
+// 1 and 2 (LemmaRow). Restores the instruction set at the end.
 std::vector<ProbeResult> native_probes() {
   struct Restore {
     std::string target = lane_target();
@@ -189,7 +189,6 @@ std::vector<ProbeResult> native_probes() {
       for (const SolidKernel& kernel : solid_kernels()) out.push_back(probe_kernel(kernel, target));
     }
   }
-  // Lemmas 1 and 2 on the native canvas.
   LemmaSettings settings;
   settings.points = kPoints;
   settings.seed = kSeed;
@@ -243,7 +242,7 @@ void write_report(Json report, bool pass, const std::string& path) {
   write_json(report, path);
 }
 
-// Reports the findings about the native canvas alone. json: a path, or "" for none.
+// Prints the results of the native canvas alone. json: a path, or "" for none.
 int doctor_without_gl(const std::string& json) {
   const std::vector<ProbeResult> native = native_probes();
   if (!json.empty()) {

@@ -104,8 +104,8 @@ class LemmaCommand {
     LemmaSettings settings;
     settings.points = points_;
     settings.seed = seed_;
-    // Drawn triangles are displaced by as much as double arithmetic may err. Not with GL, whose own
-    // errors would hide that.
+    // Drawn triangles are displaced by the largest error of double arithmetic. GL draws without
+    // this displacement, since GL's own errors would hide it.
     settings.displace = on.name != "gl";
     settings.radius = [&rule](const Budget& budget, double step) {
       return lemma_radius(rule, budget, step);

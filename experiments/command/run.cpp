@@ -38,7 +38,7 @@ std::vector<ContactKind> parse_kinds(const std::string& list) {
   return out;
 }
 
-// Name, title and end of the help, per command of RunCommand::Kind.
+// Name, title and end of the help of each command, in the order of RunCommand::Kind.
 constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
     {{"run", "cull a scene, test what is left, account for every pair",
       "Examples:\n"
@@ -93,9 +93,9 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
   return {found.begin(), found.end()};
 }
 
-// Returns lines about objects that may lie inside a closed object: the box of the object lies in
-// that of the closed object, and the surfaces do not meet. Empty if there are no such objects, or
-// if more than a million pairs of boxes overlap.
+// Returns lines about objects that may lie inside a closed object. Such an object's box lies in the
+// closed object's box, and the surfaces do not meet. Empty if there are no such objects, or if more
+// than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record) {
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
@@ -126,7 +126,7 @@ std::string nested_line(const Scene& scene, const Record& record) {
       counted(count, "object", "objects"), first);
 }
 
-// Returns the path of the file, relative to the folder of the record.
+// Returns the path of the file relative to the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
   // Links are resolved first, since `..` behind a link names another folder than it seems.
   const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());

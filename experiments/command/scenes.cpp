@@ -111,7 +111,7 @@ class ScenesCommand {
       throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
     }
     check_output("-");
-    // The command may replace files of the folder, but not the meshes of which the scene is made.
+    // The command may replace files of the folder, but not the meshes that the scene is made from.
     std::vector<NamedFile> there;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))

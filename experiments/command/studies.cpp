@@ -43,7 +43,8 @@ constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 class StudiesCommand {
  public:
-  // Declares a command for each study, and the command `all`. They call run() of this object.
+  // Declares a command for each study, and the command `all`. The commands call run() of this
+  // object.
   std::vector<Command> add_to(CLI::App& experiment) {
     std::vector<Command> out;
     const auto declare = [&](const std::string& name, const std::string& title,

@@ -30,8 +30,7 @@ constexpr const char* kRemedy =
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
 
-// Throws Error unless the checker's output is about these files, and its verdict fits its exit
-// status.
+// Throws Error unless the checker's output names these files, and its verdict fits its exit status.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
                   const std::string& scene, bool proved) {
   std::istringstream lines(said);
@@ -54,7 +53,7 @@ void require_said(const std::string& said, const std::vector<std::string>& certi
 // words of the scene go to the checker through a file in memory.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words) {
-  // The new process inherits the descriptor, and opens the file by its number.
+  // The checker inherits the file descriptor, and opens the file by this number.
   const int memory = ::memfd_create("scene", 0);
   std::FILE* file = memory < 0 ? nullptr : ::fdopen(memory, "wb");
   if (file == nullptr) refuse(std::string("no file in memory: ") + std::strerror(errno));
@@ -92,7 +91,7 @@ int run_verified_checker(const std::vector<std::string>& certificates, bool tile
   for (std::string& word : given) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  // Some functions of the checker recurse on the list of an object's triangles.
+  // The checker gets the largest stack, since it recurses on the list of an object's triangles.
   rlimit stack{};
   const bool known = ::getrlimit(RLIMIT_STACK, &stack) == 0;
   const rlimit largest{stack.rlim_max, stack.rlim_max};

@@ -16,7 +16,7 @@ std::uint32_t last(const SuiteObject& object) {
 
 void add_last(SuiteObject& object) { object.add(last(object) - 2, last(object) - 1, last(object)); }
 
-/// A sheet of `columns` by `rows` cells whose vertex (i, j) is at place(i, j).
+/// Returns a sheet of `columns` by `rows` cells. Vertex (i, j) is at place(i, j).
 template <class Place>
 SuiteObject sheet(int columns, int rows, const Place& place) {
   Mesh mesh = shapes::surface(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows),
@@ -26,7 +26,7 @@ SuiteObject sheet(int columns, int rows, const Place& place) {
   return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
-/// The place across of column i in a sheet that is folded to and fro, in layers of `width` columns.
+/// Returns the x coordinate of column i of a sheet folded in zigzag, in layers of `width` columns.
 double folded(int i, int width) {
   const int layer = i / width;
   const int within = i % width;
@@ -49,7 +49,7 @@ Objects accordion(RandomDraws&, double layers, int width) {
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
-/// Returns point i of the unit circle, without sines: from a rational parameter in each quarter.
+/// Returns point i of the unit circle. Uses a rational parametrization of each quarter, not sines.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
@@ -121,7 +121,7 @@ void each_vertex(SuiteObject& object, const Function& function) {
   for (Vec3& p : object.vertices) p = function(p);
 }
 
-/// A closed surface with bumps, and with noise of about a twentieth of an edge.
+/// Returns a closed surface with bumps, and with noise of about a twentieth of an edge's length.
 SuiteObject scan(RandomDraws& draws, int level) {
   SuiteObject out = sphere(level);
   std::array<Vec3, 8> bumps;
@@ -139,8 +139,8 @@ SuiteObject scan(RandomDraws& draws, int level) {
   return out;
 }
 
-/// Two scans. In x, the least vertex of the second scan is `depth` below the largest vertex of the
-/// first scan.
+/// Returns two scans. The leftmost vertex of the second scan is `depth` to the left of the
+/// rightmost vertex of the first scan.
 Objects scans(RandomDraws& draws, double depth, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = scan(draws, level);
@@ -167,8 +167,8 @@ Objects scaled_scans(RandomDraws& draws, double scale, int level) {
   return out;
 }
 
-/// A box. Its top and its bottom are fans of long thin triangles from one corner to `steps` points
-/// on each of the two opposite edges.
+/// Returns a box. Its top and its bottom are fans of long thin triangles from one corner to `steps`
+/// points on each of the two opposite edges.
 SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   SuiteObject out;
   for (const double z : {lo.z(), hi.z()}) {
@@ -191,7 +191,7 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   return out;
 }
 
-/// Coordinates have few bits, so the faces that touch are exactly in one plane.
+/// Coordinates have few bits, so touching faces lie exactly in one plane.
 Objects plates(RandomDraws&, double slivers, int halvings) {
   const double width = std::ldexp(1, -halvings);
   const int steps = static_cast<int>(slivers * width);
@@ -203,7 +203,7 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// The outermost shell is moved by up to more than the gap, so it mostly crosses the middle shell.
+/// The outermost shell is moved, mostly by more than the gap, so it mostly crosses the middle one.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -248,7 +248,7 @@ Objects sheets(RandomDraws& draws, double gap, int cells) {
           sheet(cells, cells, above)};
 }
 
-/// Merges vertices at one position into the first of them, and removes those that no triangle uses.
+/// Merges vertices that have the same position, and removes vertices that no triangle uses.
 void join_vertices(SuiteObject& object) {
   std::map<std::array<double, 3>, std::uint32_t> first;
   std::vector<Vec3> kept;
@@ -263,9 +263,9 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-// Motions. All frames are made with the same draws; only `now` differs. Except in cogs, no face is
-// parallel to an axis of the coordinates, and coordinates have few bits, so that contacts are
-// exact.
+// The motions. All frames of a motion are made with the same random draws; only `now` and `frame`
+// differ. Coordinates have few bits, so that contacts are exact, and no face is parallel to an
+// axis. The family cogs is an exception to both.
 
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
   SuiteObject out;

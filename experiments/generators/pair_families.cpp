@@ -16,7 +16,7 @@ Frame scaled_rotation(double w, double x, double y, double z) {
   return {{first, second, third}};
 }
 
-/// Returns the axes of the coordinates, in random order, each in random direction.
+/// Returns the axes of the coordinates, in random order and with random signs.
 Frame straight_frame(RandomDraws& draws) {
   Frame out{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
   std::swap(out.axis[0], out.axis[draws.below(3)]);
@@ -25,8 +25,8 @@ Frame straight_frame(RandomDraws& draws) {
   return out;
 }
 
-// The families of contacts: the two triangles have one common point, or lie in one plane. The
-// parameter is the number of bits of the integer coordinates.
+// The families of contacts: the two triangles touch in a point or a segment, or lie in one plane.
+// The parameter is the number of bits of the integer coordinates.
 
 const std::vector<double> kContactBits = {8, 16, 24, 32, 40, 52};
 
@@ -47,7 +47,7 @@ Vec3 arm(RandomDraws& draws, double bits) {
   return draws.whole_point(std::ldexp(1, static_cast<int>(bits) - 3));
 }
 
-/// Returns the pair, scaled by 2^-bits. In one call of three, b moves by up to a unit along each
+/// Returns the pair, scaled by 2^-bits. In 1 of 3 calls, b first moves by -1, 0 or 1 along each
 /// axis.
 MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
@@ -60,7 +60,7 @@ MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) 
   return out;
 }
 
-/// Returns true in three calls of four. If true, b stays on one side of a.
+/// Returns true with probability 3/4. If true, the caller keeps b on one side of a.
 bool stays_aside(RandomDraws& draws) { return !draws.chance(4); }
 
 MadePair vertex_vertex(RandomDraws& draws, double bits) {
@@ -118,7 +118,7 @@ MadePair edge_edge(RandomDraws& draws, double bits) {
   const Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
   if (stays_aside(draws)) {
-    // The plane of both edges has a on one side; v points to the other side.
+    // a is on one side of the plane of both edges; v points to the other side.
     const Vec3 across = (a[1] - a[0]).cross(u);
     v = along(v, across.dot(a[2] - at) > 0 ? Vec3(-across) : across);
   }
@@ -153,8 +153,8 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Two triangles that touch in one plane. b then moves by `steps` of the shortest steps: out of the
-/// plane, or in the plane across the common edge.
+/// Returns two triangles that touch in one plane, after b has moved by `steps` times the shortest
+/// step: out of the plane, or in the plane across the common edge.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
@@ -172,7 +172,8 @@ MadePair coplanar_step(RandomDraws& draws, double steps) {
   const double shift = drawn() / 2;
   MadePair pair;
   pair.a = {at(0, 0, 0), at(length, 0, 0), at(drawn(), -depth, 0)};
-  // If b moves out of the plane, it is on a's side, so that without the move both would overlap.
+  // If b moves out of the plane, b is on the same side of the edge as a. Without the move, both
+  // would overlap.
   const double top = in_plane ? height : -height;
   const double from = std::floor(in_plane ? shift : length / 4);
   pair.b = {at(from, step, out), at(from + std::floor(length / 2), step, out),
@@ -185,7 +186,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
   constexpr double kExtent = 0x1p50;
   MadePair out;
   for (Vec3& p : out.a) p = draws.whole_point(kExtent);
-  const bool level = draws.chance(3);  // parallel to a plane of the coordinates
+  const bool level = draws.chance(3);  // parallel to a coordinate plane
   const int axis = draws.below(3);
   if (level) out.a[1][axis] = out.a[2][axis] = out.a[0][axis];
   out.b = out.a;
@@ -194,14 +195,14 @@ MadePair duplicates(RandomDraws& draws, double units) {
   for (Vec3& p : out.b) p[moved] += by;
   if (units == 0) {
     out.neighbours = draws.chance(3);
-    // One corner of b, which was equal to a, moves by one unit.
+    // b equals a. Moves one corner of b by one unit.
     if (!out.neighbours && draws.chance(2)) out.b[draws.below(3)][moved] += draws.sign();
   }
   each_corner(out, [&](Vec3& p) { p *= 0x1p-50; });
   return out;
 }
 
-// The families of distances, and those of shapes.
+// The families of gaps, and the families of shapes.
 
 /// Returns 0, and then 2^-k and -2^-k for each k below. With zero_each, a 0 comes before each k.
 std::vector<double> signed_powers(bool zero_each) {
@@ -257,7 +258,6 @@ MadePair gap_edge(RandomDraws& draws, double gap) {
   return mapped(frame_of(draws), a, b);
 }
 
-/// Two triangles of about size 1, which may meet or not.
 MadePair near_pair(RandomDraws& draws) {
   const double side = draws.sign();
   const double gap = std::ldexp(side, -draws.below(12));
@@ -279,7 +279,7 @@ MadePair far_away(RandomDraws& draws, double distance) {
   return pair;
 }
 
-/// A scaled pair; half of the time the scale is a power of two, which keeps contact exact.
+/// Returns a scaled pair. With probability 1/2 the scale is a power of two, so contacts stay exact.
 MadePair scales(RandomDraws& draws, double scale) {
   MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
@@ -318,8 +318,8 @@ MadePair random_pair(RandomDraws& draws, double) {
   return out;
 }
 
-/// A triangle with a long edge through `centre`. Its third corner is about 1 / aspect away from the
-/// edge.
+/// Returns a triangle with a long edge through `centre`. Its third corner is about 1 / aspect away
+/// from the edge.
 Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
   const Vec3 half = draws.point();
   const Vec3 beside = draws.point() / aspect;
@@ -357,7 +357,7 @@ Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double ext
   return with_point(draws.below(3), at, u, v);
 }
 
-/// Returns the step by which b moves: in one call of three, up to a unit along each axis, else 0.
+/// Returns the step by which b moves: -1, 0 or 1 along each axis with probability 1/3, else zero.
 Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);
@@ -386,7 +386,7 @@ MadePair segments(RandomDraws& draws, double bits) {
   return in_units({{a, b}}, bits);
 }
 
-/// Returns a pair of neighbours. a, b: coordinates along the axes of a random frame.
+/// Returns a pair of neighbours. a, b: corners in the coordinates of a random frame.
 MadePair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
   MadePair out = mapped(frame_of(draws), a, b);
   out.neighbours = true;
@@ -447,7 +447,7 @@ Frame leaning_frame(RandomDraws& draws) {
   const double w = draws.sign();
   const double x = draws.sign();
   const double y = draws.sign();
-  // One part is 0, since a rotation with four parts of magnitude 1 only exchanges axes.
+  // One part is 0: a quaternion with four parts of magnitude 1 would only permute the axes.
   return scaled_rotation(w, x, y, 0);
 }
 

@@ -7,9 +7,9 @@
 
 namespace farcull {
 
-// Random draws of coordinates, points and pairs of triangles. Integers times a power of two are
-// exact doubles. So triangles with such coordinates that touch still touch as doubles. Sines and
-// logarithms are not used, since their last bits differ between platforms.
+// Random draws of coordinates, points and pairs of triangles. Most coordinates are integers times a
+// power of two, which doubles hold exactly. So triangles that touch by construction also touch as
+// doubles. Sines and logarithms are not used, since their last bits differ between platforms.
 
 class RandomDraws : public shapes::Random {
  public:
@@ -25,8 +25,8 @@ class RandomDraws : public shapes::Random {
     const auto count = static_cast<std::uint64_t>(hi - lo) + 1;
     return static_cast<Number>(lo) + static_cast<Number>(below(count));
   }
-  /// Returns a multiple of 2^-8 from lo to hi. It has few bits, so that adding a small gap is
-  /// exact. Precondition: lo and hi are multiples of 2^-8.
+  /// Returns a multiple of 2^-8 from lo to hi. The result has few bits, so that adding a small gap
+  /// is exact. Precondition: lo and hi are multiples of 2^-8.
   double coarse(double lo, double hi) { return whole(lo * 256, hi * 256) / 256; }
   /// Returns a point whose coordinates are integers from -extent to extent.
   Vec3 whole_point(double extent) {
@@ -84,7 +84,7 @@ struct PairFamily {
   std::string name;
   std::string description;     // one line
   std::string parameter;       // what the parameter means; "" if there is none
-  std::vector<double> values;  // of the parameter; consecutive pairs take consecutive values
+  std::vector<double> values;  // values of the parameter; consecutive pairs use consecutive ones
   MadePair (*make)(RandomDraws& draws, double parameter);
 };
 
@@ -100,28 +100,27 @@ struct SuiteObject {
   void add(std::uint32_t i, std::uint32_t j, std::uint32_t k) { triangles.push_back({i, j, k}); }
 };
 
-/// Meshes of one kind: one that people have, such as scans or cloth, or one that is hard to decide,
-/// such as folds or fans.
+/// Meshes of one kind: practical ones such as scans or cloth, or hard ones such as folds or fans.
 struct MeshFamily {
   std::string name;
   bool self = false;  // true: each object is also tested against itself
-  /// Makes the objects. detail: their fineness, in a unit that depends on the family.
+  /// Makes the objects. detail: fineness of the meshes, in a unit that depends on the family.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
-    double parameter = 0;  // docs/suite.md has its meaning for each family
+    double parameter = 0;  // docs/suite.md defines this for each family
     int detail = 0;
   };
   std::vector<Member> members;
-  std::size_t small = 0;  // a small suite has only this many first members
+  std::size_t small = 0;  // a small suite has only the first `small` members
   bool motion = false;    // true: the members are frames of one motion
 };
 
 /// Returns the families, sorted by name.
 const std::vector<MeshFamily>& mesh_families();
 
-/// Returns the objects of member `index` of a family. They depend only on the arguments. All frames
-/// of a motion are made with the same draws. If MeshFamily::self, no two vertices of an object have
-/// the same position.
+/// Returns the objects of member `index` of a family. The objects depend only on the arguments. All
+/// frames of a motion are made with the same draws. If MeshFamily::self, no two vertices of an
+/// object have the same position.
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index);
 

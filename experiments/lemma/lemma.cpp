@@ -1,5 +1,5 @@
-// Generators make triangles, which are drawn in windows. Points of the triangles are tested
-// exactly.
+// Generators make hard triangles. The triangles are drawn in windows, and points of the triangles
+// are tested in exact arithmetic.
 #include "experiments/lemma/lemma.h"
 
 #include <fmt/format.h>
@@ -14,13 +14,13 @@
 namespace farcull {
 namespace {
 
-constexpr double kUsualDepth = 128;  // LemmaSettings::depth
+constexpr double kUsualDepth = 128;  // default of LemmaSettings::depth
 
 using Random = RandomNumbers;
-using Weights = std::array<int, 3>;  // a point of a triangle, by weights of its corners
+using Weights = std::array<int, 3>;  // weights of a triangle's corners; they give one of its points
 
-// A triangle in pixel space, and the points of it to test. The origin, a pixel corner, is the
-// centre of the triangle's cell.
+// A triangle in pixel space, and its points to test. The origin is a pixel corner, at the centre of
+// the triangle's cell.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<Weights> weights;
@@ -40,8 +40,8 @@ std::vector<Weights> random_weights(Random& random, int count) {
   return out;
 }
 
-// A short segment at 45 degrees in the image, with its middle at q. A face of its box is one radius
-// away from q in the direction at right angles.
+// A short segment at 45 degrees in the image, with its middle at q. The segment's fattened box has
+// a face that is parallel to the segment, one radius away from q.
 Trial diagonal_segment(Random& random, const Vec3& q) {
   const Vec3 half(0x1p-14, 0x1p-14 * random.sign(), 0);
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
@@ -96,7 +96,7 @@ Trial diagonal_triangle(Random& random) {
       random_weights(random, 120)};
 }
 
-// A triangle whose plane contains the direction of the view, exactly or nearly.
+// A triangle whose plane is parallel to the viewing direction, exactly or nearly.
 Trial edge_on(Random& random) {
   const Vec3 a = in_ball(random, 10), b = in_ball(random, 10);
   Vec3 c = a + random.unit() * (b - a);
@@ -105,7 +105,7 @@ Trial edge_on(Random& random) {
   return {{a, b, c}, random_weights(random, 120)};
 }
 
-// A triangle almost parallel to the image: the normal of its slab is almost along the view.
+// A triangle almost parallel to the image: its normal is almost along the viewing direction.
 Trial flat(Random& random) {
   Trial t = random_triangle(random);
   const double tilt = std::exp2(random.between(-45, -3));
@@ -113,7 +113,7 @@ Trial flat(Random& random) {
   return t;
 }
 
-// A needle of aspect 1e3 to 1e12 in any direction; some are steep.
+// A needle of aspect ratio 1e3 to 1e12. One in three is tilted towards the viewing direction.
 Trial needle(Random& random) {
   Vec3 along = in_ball(random, 14);
   if (random.below(3) == 0) along.head<2>() *= std::exp2(random.between(-30, 0));
@@ -128,10 +128,9 @@ Trial segment_or_point(Random& random) {
   return {{a, b, random.below(2) ? a : b}, random_weights(random, 60)};
 }
 
-// A triangle nearly along the view. In the image its longest edge leans at 45 degrees, and the
-// middle of this edge is at a pixel corner. So the face of the triangle's box that looks at a
-// pixel's centre is as steep as the edge. The lean is a multiple of 2^-20 px, so that the middle is
-// exactly at the corner.
+// A triangle nearly along the viewing direction. In the image its longest edge is at 45 degrees,
+// and the middle of this edge is at a pixel corner. So the face of the fattened box next to a pixel
+// centre is as steep as the edge. `lean` is a multiple of 2^-20 px, so that the middle is exact.
 Trial steep_corner(Random& random) {
   const double lean = std::floor(std::exp2(random.between(-10, -1)) * 0x1p20) * 0x1p-20;
   const Vec3 q(0, 0, random.between(-20, 20));
@@ -178,13 +177,13 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// Returns depth_rounding(), in steps of 2^-24. For a buffer of 16 bits, two errors are added: up to
-// 1 / (2^16 - 1) when it stores, and up to 2^-24 when it is read back as a float.
+// Returns depth_rounding() in steps of 2^-24. A 16-bit buffer errs by up to 1 / (2^16 - 1) when it
+// stores a depth, and by up to 2^-24 when the depth is read back as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }
 
-// Compares a point with the samples of a pixel that contains it.
+// Compares a point with the samples of a pixel that contains the point.
 void count(const ExactPoint& point, float entry, float exit, const Window& window, int depth_bits,
            bool stored, LemmaRow& row) {
   ++row.points;
@@ -206,13 +205,13 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
   row.largest_px = std::max(row.largest_px, by * step);
 }
 
-// Random numbers for the trials, and for the depths of trials in a deep window.
+// Random numbers: `trials` for triangles, `lifts` for their depths in windows deeper than usual.
 struct Streams {
   RandomNumbers trials;
   RandomNumbers lifts;
 };
 
-// Draws one window with trials, and adds the counts to the row.
+// Draws trials in one window, and adds their counts to the row.
 void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
                const Generator& generator, Streams& random, std::uint64_t wanted, LemmaRow& row) {
   const int side = settings.side > 0 ? settings.side : generator.side;

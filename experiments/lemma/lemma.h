@@ -17,9 +17,9 @@ struct LemmaRow {
   std::uint64_t points = 0;
   std::uint64_t no_sample = 0;     // points whose pixel got no sample
   std::uint64_t not_bounding = 0;  // points whose depth is outside the samples of their pixel
-  std::uint64_t rounded = 0;       // points outside by at most depth_rounding(); see `stored`
-  double largest_px = 0;           // px; the most by which a depth is outside the samples
-  double largest_steps = 0;        // this distance in steps of the depth buffer
+  std::uint64_t rounded = 0;       // points outside by at most depth_rounding(); needs `stored`
+  double largest_px = 0;           // largest distance of a depth from its samples, in px
+  double largest_steps = 0;        // the same distance in steps of the depth buffer
   std::uint64_t violations() const { return no_sample + not_bounding; }
 };
 

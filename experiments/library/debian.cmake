@@ -1,8 +1,8 @@
-# CPack runs this on the installed files before it packs them: what Debian's policy asks for beyond `cmake --install`.
+# CPack runs this script before packing. It changes the installed files as Debian's policy requires.
 set(usr ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr)
 set(doc ${usr}/share/doc/${CPACK_PACKAGE_NAME})
 
-# The licenses themselves are in every Debian, and must not be in the package.
+# Every Debian system has the texts of the licenses, so the package must not contain them.
 file(READ ${doc}/LICENSE text)
 string(REGEX REPLACE "The text of the LGPL comes first[.].*" "" text "${text}")
 file(WRITE ${doc}/copyright "${text}On Debian, the texts of the licenses are in /usr/share/common-licenses/LGPL-3 and /usr/share/common-licenses/GPL-3.
@@ -22,7 +22,7 @@ file(WRITE ${doc}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) un
 ")
 execute_process(COMMAND gzip -9n ${doc}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
-# Debian's Python looks into this folder alone, whatever prefix the build was configured for.
+# Debian's Python reads only lib/python3/dist-packages, whatever prefix the build was configured for.
 file(GLOB python ${usr}/lib/python3.*/*-packages)
 if(python)
   file(MAKE_DIRECTORY ${usr}/lib/python3)

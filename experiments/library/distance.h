@@ -1,6 +1,7 @@
 // Finds distances between objects, with nearest points (docs/proximity.md), and all pairs of
-// triangles within a distance. Exact arithmetic decides which pairs are answers. Numbers are exact
-// and rounded once. The exception is DistanceKind::all without DistanceFinderOptions::exact.
+// triangles within a distance. Exact arithmetic decides which pairs are answers. Each number is the
+// exact value, rounded once. The exception is DistanceKind::all without
+// DistanceFinderOptions::exact.
 #pragma once
 
 #include <array>
@@ -29,17 +30,18 @@ struct DistanceFinderOptions {
   bool self =
       false;  // also pairs of triangles of one object, except neighbours; not with `nearest`
   std::vector<bool> self_objects = {};  // one `self` per object; may be empty
-  bool inside = true;                   // find whether an object is inside another; not with `all`
-  /// true: sets DistanceAnswer::squared. With `all`, each number is then exact and rounded once,
-  /// which takes about ten times as long.
+  bool inside = true;                   // find which object is inside the other; not with `all`
+  /// true: sets DistanceAnswer::squared. With `all`, each number is then the exact value, rounded
+  /// once; this takes about ten times as long.
   /// false, with `all`: the relative error of a distance is at most 2^-32. The distance is 0 iff
   /// the triangles meet. The error of a normal is at most 2^-15. A point is off its triangle by at
-  /// most 2^-45 of the pair's extent. It may be another point that is nearly as near.
+  /// most 2^-45 of the pair's extent. If several points are almost equally near, any of them may be
+  /// given.
   bool exact = false;
   /// Pairs of different objects that get no answer. Objects are numbered from 0. Not with
   /// `nearest`.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
-  unsigned threads = 0;  // up to 1024; 0: as many as there are cores; changes no answer
+  unsigned threads = 0;  // up to 1024; 0: one per core; the answer does not depend on it
   MayGoOn may_go_on = {};
 };
 

@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// Copies matrices and converts to an Input. It must live as long as that Input.
+/// Copies matrices, and converts to an Input. The EigenInput must live as long as the Input.
 ///
 ///   collider.find(farcull::EigenInput(V, F, object_starts));
 class EigenInput {
@@ -54,7 +54,7 @@ class EigenInput {
   std::vector<Pose> poses_;
 };
 
-/// collide() for matrices.
+/// Calls collide() with matrices of Eigen.
 template <class Vertices, class Triangles>
 Result collide(const Eigen::MatrixBase<Vertices>& V, const Eigen::MatrixBase<Triangles>& F,
                std::vector<std::uint32_t> object_starts, const Options& options = {}) {

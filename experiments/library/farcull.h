@@ -4,8 +4,8 @@
 //
 // Candidates come from boxes of blocks of triangles (docs/library.md), which miss no pair that
 // collides. Exact predicates on the doubles as given decide the candidates. Triangles are closed
-// sets, so touching counts, and a degenerate triangle is the segment or the point that it is. The
-// answer is the same for any number of threads.
+// sets, so touching counts. A degenerate triangle counts as a segment or a point. The answer is the
+// same for any number of threads.
 //
 // A function that fails throws an Error, which says where, why and what to do (error.h), or
 // std::bad_alloc if memory runs out. For distances see distance.h, for matrices of Eigen see
@@ -69,10 +69,10 @@ struct Options {
 };
 
 /// Moves an object: each of its vertices (x, y, z) becomes the point whose first coordinate is
-/// ((r[0] * x + r[1] * y) + r[2] * z) + t[0]; the second one has r[3] to r[5] and t[1], the third
-/// one r[6] to r[8] and t[2]. Each multiplication and each addition rounds to the nearest double.
-/// The answer is exact for the points that come out. r is usually a rotation; it may mirror, scale
-/// and shear. A matrix without an inverse, which flattens the object, is refused.
+/// ((r[0] * x + r[1] * y) + r[2] * z) + t[0]; the second coordinate uses r[3] to r[5] and t[1], the
+/// third uses r[6] to r[8] and t[2]. Each multiplication and each addition rounds to the nearest
+/// double. The answer is exact for the rounded points. r is usually a rotation; it may mirror,
+/// scale and shear. A matrix without an inverse, which flattens the object, is refused.
 struct Pose {
   std::array<double, 9> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row by row
   std::array<double, 3> t = {0, 0, 0};
@@ -92,7 +92,7 @@ struct Input {
   std::span<const std::int64_t> wide_triangles = {};
   /// One pose for each object. If empty, no object moves. With poses, two objects must not use the
   /// same vertex. If all other arrays are empty, the poses move the last arrays that the same
-  /// Collider or DistanceFinder got. No call after those arrays may have had bad input.
+  /// Collider or DistanceFinder got. A call with bad input discards those arrays.
   std::span<const Pose> poses = {};
 };
 
@@ -153,7 +153,7 @@ struct Report {
   std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` if the
                               // limit was reached first
   std::uint64_t neighbours = 0;   // decided candidates that are neighbours, colliding or not
-  double contacts_ms = 0;         // wall clock of the kinds of contact
+  double contacts_ms = 0;         // wall clock of finding the kinds of contact
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   std::vector<Stage> stages;
 
@@ -181,8 +181,8 @@ Result collide(const Input& input, const Options& options = {});
 
 /// Finds colliding pairs repeatedly. From call to call it keeps buffers, and results about
 /// triangles that did not move. Any thread may call it, but only one call may run at a time. A
-/// second call throws Error and changes nothing. So does a call after the Collider was moved from.
-/// While a Collider is moved or destroyed, no other thread may use it.
+/// second call meanwhile throws Error and changes nothing. A call of a moved-from Collider does the
+/// same. While a Collider is moved or destroyed, no other thread may use it.
 class Collider {
  public:
   /// Throws Error naming the option that is bad.

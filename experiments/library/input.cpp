@@ -16,9 +16,9 @@ constexpr std::size_t kBlock = 1536;  // numbers in a block, a multiple of 3; fi
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
 
-// True if no number is infinite or NaN. The exponent bits of such a number are all ones, so adding
-// one to the exponent sets the sign bit. The loop has no branch, so that the compiler can vectorize
-// it.
+// True if no number is infinite or NaN. The exponent bits of infinity and NaN are all ones, so
+// adding one to the exponent sets the sign bit. The loop has no branch, so that the compiler can
+// vectorize it.
 bool all_finite(std::span<const double> block) {
   constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
   std::uint64_t bits = 0;
@@ -137,8 +137,8 @@ bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool chec
   return same;
 }
 
-// Throws Error if an object has no triangle. So a list of labels of triangles, as in 0, 0, 1, 1, is
-// not mistaken for a list of first triangles.
+// Throws Error if an object has no triangle, so that labels of triangles, such as 0, 0, 1, 1, are
+// not mistaken for first triangles.
 void require_starts(std::span<const std::uint32_t> starts, std::size_t triangles) {
   for (std::size_t o = 0; o < starts.size(); ++o) {
     const bool rises = o == 0 ? starts[0] == 0 : starts[o] > starts[o - 1];
@@ -305,7 +305,7 @@ bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, Ta
   return cost < all && taken.loss < all;
 }
 
-// Copies input with poses and moves it. Returns the same as copy().
+// Copies input with poses and moves the vertices. Returns the same as copy().
 bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change, bool asked) {
   const bool alone = are_alone(input);
@@ -326,7 +326,7 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
   return same;
 }
 
-// The enumerations of farcull.h have the order of the internal ones.
+// The enumerations of farcull.h have the same values as the internal ones.
 static_assert([] {
   using Given = Contact::Kind;
   using Own = ContactKind;
@@ -358,7 +358,7 @@ void load_input(const Input& input, bool self, const std::vector<bool>& self_obj
     }
     if (change) change->same = same;
   } catch (...) {
-    taken = {};  // it may hold unchecked input
+    taken = {};  // `taken` may hold unchecked input
     throw;
   }
 }
@@ -382,7 +382,7 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     --taken.skips;
     return std::nullopt;
   }
-  taken.skips = taken.next_skips;  // set to 0 below if boxes decide
+  taken.skips = taken.next_skips;  // set to 0 below on success
   taken.next_skips = std::min(2 * taken.next_skips, kMostSkips);
   try {
     if (!taken.rigid) {
@@ -448,7 +448,7 @@ std::vector<ObjectPair> ignored_of(const std::vector<std::array<std::uint32_t, 2
 }
 
 const char* to_string(Contact::Kind kind) {
-  // name_of() views a literal, so it ends with a 0.
+  // name_of() returns a view of a string literal, which ends with a 0.
   return name_of(kContactKinds.at(static_cast<std::size_t>(kind))).data();
 }
 

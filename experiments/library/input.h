@@ -30,7 +30,7 @@ auto as_proved(const Call& call) {
   return call();
 }
 
-/// Runs call(progress) in another thread, and calls may_go_on as MayGoOn in farcull.h says.
+/// Runs call(progress) in another thread, and calls may_go_on as described at MayGoOn in farcull.h.
 template <class Call>
 auto watched(const MayGoOn& may_go_on, const Call& call) {
   if (!may_go_on) return call(Progress());
@@ -54,7 +54,7 @@ auto watched(const MayGoOn& may_go_on, const Call& call) {
       if (!may_go_on(now)) throw Cancelled();
     } while (!running.wait_for(kBetween));
   } catch (...) {
-    running.stop();  // its destructor waits for the end
+    running.stop();  // the destructor of `running` waits for the end
     throw;
   }
   running.finish();
@@ -83,18 +83,17 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// The input of the last call, and the poses of its objects.
 struct TakenInput {
-  Scene scene;                    // with vertices moved by the poses; exception: `stale`
+  Scene scene;                    // vertices are moved by the poses, unless `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   // The members below are empty if the last call had no poses.
   std::vector<Vec3> unmoved;  // the vertices before the poses
   std::vector<std::uint32_t>
       object_of;  // the object of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
-  /// True if only the vertices of some blocks are in these poses. The other vertices are in older
-  /// poses.
+  /// True if only the vertices of some blocks were moved by `poses`, and the others by older poses.
   bool stale = false;
   std::optional<RigidBlocks> rigid;  // made of the unmoved vertices; null: not made yet
-  double loss = 0;                   // number of triangles; see pays() in input.cpp
+  double loss = 0;                   // lost time, in triangles; see pays() in input.cpp
   /// skips: how many of the next calls of load_poses() return null at once. next_skips: the value
   /// of `skips` after the next failure. It doubles with each failure and is 1 after a success.
   int skips = 0, next_skips = 1;
@@ -103,16 +102,16 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 inline constexpr int kMostSkips = 32;
 
 /// Copies the input into `taken`, which holds the input of the last call. self, self_objects: as in
-/// Options. change: receives the changes since the last call; may be null. asked: true if a scene
-/// without anything to test is an error. Throws Error for input that does not satisfy Input;
-/// `taken` is then empty.
+/// Options. change: receives the changes since the last call; may be null. asked: whether a scene
+/// with nothing to test is an error. Throws Error for input that does not satisfy Input; `taken` is
+/// then empty.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
-/// The question for which load_poses() moves vertices.
+/// Settings of the search for which load_poses() moves vertices.
 struct PosesQuestion {
   double clearance = 0;
-  std::span<const ObjectPair> ignored;  // pairs that ignored_of() gives
+  std::span<const ObjectPair> ignored;  // result of ignored_of()
   unsigned threads = 0;
   bool keeps_frames = false;  // the results of the last call are kept
 };
@@ -120,7 +119,7 @@ struct PosesQuestion {
 /// these blocks. Returns null if the caller must call load_input() instead:
 /// - the input has other arrays, or the last call had another number of poses,
 /// - a pose is bad, or an object is tested against itself,
-/// - boxes do not decide, or load_input() takes less time,
+/// - decide_by_motions() returns null, too many boxes overlap, or load_input() takes less time,
 /// - an earlier call failed (TakenInput::skips).
 std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion& question,
                                         TakenInput& taken);

@@ -41,16 +41,16 @@ struct Collider::State {
   Session session;
   TakenInput taken;  // the input of the last call
   FrameChange change;
-  std::optional<BlockDecision> decided;  // what load_poses() returned
+  std::optional<BlockDecision> decided;  // result of load_poses()
   std::uint64_t calls = 0;
   std::atomic_flag used;
 
   explicit State(const Options& given)
       : options(given), run(run_options(given)), session("native", given.threads, Say()) {}
 
-  // Loads the scene of a call. From the third call on, it finds what changed since the last call.
+  // Loads the scene of a call. From the third call on, also finds the changes since the last call.
   void take_scene(const Input& input);
-  // Finds the collisions. start: runs since the begin of the call. callers: the caller's
+  // Finds the collisions. start: measures time from the begin of the call. callers: the caller's
   // floating-point environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
@@ -134,7 +134,7 @@ Result collide(const Input& input, const Options& options) { return Collider(opt
 
 namespace {
 
-// The enumerations of distance.h have the order of the internal ones.
+// The enumerations of distance.h have the same values as the internal ones.
 static_assert(same(DistanceKind::objects, DistancePairs::objects) &&
               same(DistanceKind::nearest, DistancePairs::nearest) &&
               same(DistanceKind::all, DistancePairs::all));

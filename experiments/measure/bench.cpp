@@ -30,7 +30,7 @@ BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::
   return [=](const Scene& scene) {
     const Stopwatch watch;
     Record record = run(scene, options, *session, {}, {.answer_only = true});
-    double build_ms = 0;  // for making boxes, before the search for candidates
+    double build_ms = 0;  // time of making boxes, before the search for candidates
     for (const Stage& stage : record.trace) {
       if (stage.kind == StageKind::boxes) build_ms += stage.ms;
     }
@@ -236,7 +236,7 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
           row.candidate_pairs = answer.candidate_pairs;
           row.pairs = answer.pairs.size();
         }
-        // A cold run counts only if it took longer than the limit, since no other run follows.
+        // A cold run counts only if it is over the limit, since no other run follows then.
         if (round >= 0 || ms > rounds.limit_ms) {
           parts[i].build.push_back(answer.build_ms);
           parts[i].candidates.push_back(answer.candidates_ms);

@@ -1,11 +1,11 @@
-// `farcull bench` times our methods and other libraries (peers) on one scene, in one process.
+// `farcull bench` times farcull's methods and other libraries (peers) on one scene, in one process.
 // Without an option, it times finding the colliding pairs. With --distances, it times distances
 // between objects, and counts wrong distances. With --poses, it times frames in which an object
 // moves.
 //
 // Every contestant is first set up (contexts, shaders, thread pools). Then it runs once cold, and
-// its memory is measured. Then the contestants run in turn, `repeat` times each, so that a slow
-// moment of the machine falls on all. All contestants must find the same pairs.
+// its memory is measured. Then the contestants run in turn, `repeat` times each, so that a
+// temporary slowdown of the machine affects all of them. All contestants must find the same pairs.
 #pragma once
 
 #include <algorithm>
@@ -27,25 +27,25 @@ struct BenchContestant {
   std::string library = {};   // name and version of a peer's library
   std::string left_out = {};  // why the contestant does not run; empty: it runs
   double setup_ms = 0;
-  BenchRun run = {};  // null if it is left out
+  BenchRun run = {};  // null if the contestant is left out
 };
 
 struct BenchOptions {
   std::string peers = "all";    // all, none, or names with commas
-  std::string methods = "all";  // as peers
+  std::string methods = "all";  // all, none, or names with commas
   unsigned threads = 1;
   int repeat = 5;
   double limit_s = 60;                // a contestant whose cold run takes longer is not repeated
-  std::string device;                 // as --device of `farcull run`; "": GL if hardware answers
+  std::string device;                 // as --device of `farcull run`; "": GL only on hardware
   bool self = false;                  // tests every object against itself
-  std::optional<std::uint64_t> seed;  // of the scene
+  std::optional<std::uint64_t> seed;  // seed of the scene
 };
 
 /// Times and memory of a contestant.
 struct TimedRow {
   std::string name, library;
   bool peer = false;
-  Spread total_ms = {};                 // of the repeated runs; without these, of the cold run
+  Spread total_ms = {};                 // of the repeated runs; of the cold run if there are none
   double cold_ms = 0, build_ms = 0;     // build_ms: a median
   std::optional<double> peak_mib = {};  // memory that the cold run added at its peak
   int repeats = 0;                      // 0: the cold run was over the limit
@@ -125,20 +125,20 @@ struct DistanceBenchOptions {
   double limit_s = 60;  // a contestant whose cold run takes longer is not repeated
 };
 
-/// A contestant's answers compared with ours. Our answers are exact.
+/// A contestant's answers compared with farcull's answers, which are exact.
 struct DistanceErrors {
   std::uint64_t answers = 0;
-  std::uint64_t lacking = 0;       // distances that only we give
+  std::uint64_t lacking = 0;       // distances that only farcull gives
   std::uint64_t beyond = 0;        // distances that only the contestant gives
-  std::uint64_t exact = 0;         // distances that are the same double as ours
+  std::uint64_t exact = 0;         // distances that are the same double as farcull's
   std::uint64_t other_zero = 0;    // distances where exactly one of the two answers is 0
   std::uint64_t other_object = 0;  // with `nearest`: answers with a farther object
-  double largest_relative = 0;     // relative error, over distances where no answer is 0
+  double largest_relative = 0;     // largest relative error where neither answer is 0
   FARCULL_FIELDS(answers, exact, lacking, beyond, other_zero, other_object, largest_relative)
 };
 
 struct DistanceBenchRow : TimedRow {
-  double query_ms = 0;  // a median
+  double query_ms = 0;  // median of the runs
   DistanceErrors errors = {};
 };
 
@@ -147,7 +147,7 @@ using LeftOut = std::vector<std::pair<std::string, std::string>>;  // name, reas
 struct DistanceBenchResult {
   std::vector<DistanceBenchRow> rows;  // rows[0] is farcull
   LeftOut left_out;
-  std::optional<std::size_t> fastest_peer;  // index into rows; comparable peers only
+  std::optional<std::size_t> fastest_peer;  // index into rows; only comparable peers count
 };
 
 /// Measures distances between different objects only. Throws Error naming the option if a peer is
@@ -155,10 +155,10 @@ struct DistanceBenchResult {
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 
-/// `farcull distance` as a peer: the first contestant of every bench_distances().
+/// `farcull distance` in the form of a peer. It is the first contestant of bench_distances().
 DistancePeer farcull_distances();
-/// Returns the distances of a record in the form that peers use. Precondition: the record is of
-/// `objects`, or of `nearest` with k = 1.
+/// Returns the distances of a record in the form that peers use. Precondition: the record answers
+/// `objects`, or `nearest` with k = 1.
 std::vector<PeerDistance> as_peer(const DistanceRecord& record);
 
 /// Compares `answer` with `exact`, the exact answer to the same question. Both are sorted.
@@ -176,7 +176,7 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
 struct PoseBenchOptions {
   std::string peers = "all";  // all, none, or names with commas
   unsigned threads = 1;
-  int repeat = 5;       // frames that count
+  int repeat = 5;       // number of frames whose times count
   double limit_s = 60;  // a contestant whose cold frame takes longer is not repeated
 };
 
@@ -199,7 +199,7 @@ struct PoseBenchResult {
 PoseBenchResult bench_poses(const Scene& scene, const PoseBenchOptions& options,
                             const Progress& progress = {});
 
-/// Says in words which of our rows differs from row 0. Empty if no row differs.
+/// Returns a text about the first of farcull's rows that differs from row 0; empty if none differs.
 std::string disagreement_of(const PoseBenchResult& result);
 
 nlohmann::ordered_json to_json(const Scene& scene, const PoseBenchOptions& options,
@@ -211,8 +211,8 @@ std::string pose_bench_table(const Scene& scene, const PoseBenchOptions& options
 
 /// Reports "NAME, cold" or "NAME, 2 of 5" to `progress`.
 void show_round(const Progress& progress, const std::string& name, int round, int repeats);
-/// Writes the times of row i. Makes the row the fastest peer if it is a peer, `counts` is true and
-/// its median is the least so far.
+/// Writes the times of row i. Makes the row the fastest peer if the row is a peer, `counts` is
+/// true, and the row's median is the least so far.
 template <class Result>
 void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool counts,
                Result& result) {

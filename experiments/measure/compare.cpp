@@ -63,8 +63,8 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   return cells;
 }
 
-// Throws Error if a resolution is too large for the device. Every device of OpenGL 4.3 has room for
-// 8192 px (half of the least limit), so the device is opened only for more.
+// Throws Error if a resolution is too large for the device. Every device of OpenGL 4.3 supports
+// 8192 px, which is half of the least limit. So the device is opened only for larger resolutions.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {

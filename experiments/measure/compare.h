@@ -13,16 +13,16 @@ namespace farcull {
 
 struct CompareArguments {
   std::optional<std::string> methods;  // names with commas; empty: usual_methods()
-  /// px, with commas, for methods that draw.
+  /// Resolutions in px, with commas, for methods that draw.
   std::optional<std::string> resolutions;
-  std::string offsets = "obb";   // for far; names with commas
-  std::string radii = "budget";  // for far; values of parse_radius() with commas
+  std::string offsets = "obb";   // for the method far; names with commas
+  std::string radii = "budget";  // for the method far; values of parse_radius() with commas
   bool self = false;             // every object is tested against itself
   /// The number of runs of each method and resolution. If empty, three runs, but only one if the
   /// first run takes longer than ten seconds.
   std::optional<std::string> repeat;
   bool risk = true;    // count the pairs at risk (PairsAtRisk)
-  RunOptions options;  // for all methods, as far as a method has these options
+  RunOptions options;  // for all methods; a method uses the options that it has
 };
 
 struct Comparison {
@@ -42,8 +42,8 @@ void validate(const CompareArguments& arguments);
 
 /// Runs all methods, each `repeat` times. A method that draws runs at every resolution, and far
 /// also with every offset and radius. If a radius of far has no guarantee, all radii draw the same
-/// stages (RunOptions::no_shortcuts). Throws Error for bad arguments, and before the first run if a
-/// resolution is too large for the device.
+/// stages (RunOptions::no_shortcuts). Throws Error for bad arguments. Throws Error before the first
+/// run if a resolution is too large for the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 

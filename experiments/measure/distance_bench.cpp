@@ -1,4 +1,4 @@
-// Runs our search and the peers in turn. Compares the first answer of each peer with our answer.
+// Runs `farcull distance` and the peers in turn. Compares the peers' first answers with farcull's.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ std::vector<PeerDistance> as_peer(const DistanceRecord& record) {
     out.push_back({a, b, distance.closest.distance});
     if (nearest) out.push_back({b, a, distance.closest.distance});
   }
-  if (nearest) {  // each object keeps only its nearest one
+  if (nearest) {  // each object keeps only its nearest object
     std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
       return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
     });
@@ -60,7 +60,7 @@ DistancePeer farcull_distances() {
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
   DistanceErrors out{.answers = answer.size()};
-  // With `nearest`, each object has one distance, and a tie may have several nearest objects.
+  // With `nearest`, each object has one answer. In a tie, the nearest objects may differ.
   const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {

@@ -79,7 +79,7 @@ class FrameTable {
     found->cell = cell;
   }
 
-  /// The row of the frame, after a line of names if a column is new or wider.
+  /// Returns the row of the frame, after a line of names if a column is new or wider.
   std::string row() {
     std::string out;
     if (std::exchange(renamed_, false)) {
@@ -133,7 +133,7 @@ void add_row(const Scene& scene, const Record& record, long frame, const FrameNo
   for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
 }
 
-// Each different warning, with its first frame and the number of its frames.
+// The different warnings, each with its first frame and the number of its frames.
 struct Warnings {
   struct Line {
     std::string text;
@@ -168,8 +168,8 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
 
 // Totals over the frames so far.
 struct Totals {
-  std::vector<double> ms;  // ascending
-  double first_ms = 0;     // of the first frame
+  std::vector<double> ms;  // times of the frames, ascending
+  double first_ms = 0;     // time of the first frame
   double setup_ms = 0;
   std::uint64_t missed = 0;
   long topologies = 0;
@@ -199,7 +199,7 @@ struct Totals {
             {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
   }
 
-  // The median of all frames but the first.
+  // Returns the median time of all frames but the first.
   double following() const {
     std::vector<double> others = ms;
     others.erase(std::ranges::find(others, first_ms));

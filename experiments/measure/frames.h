@@ -14,7 +14,7 @@ namespace farcull {
 
 /// Calls `one` for each frame of the range. The progress `named` puts `before` and "frame 3 of 10:
 /// " before the name of a stage. SIGINT, SIGTERM and SIGHUP end the program at once. If `end` is
-/// not null, a line on standard error then has the number of finished frames and `end`.
+/// not null, they also print the number of finished frames and `end` on standard error.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
                     const std::function<void(long frame, const Progress& named)>& one);
@@ -25,17 +25,17 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;       // farcull verify: require the guarantee of every method
   bool pairs = false;        // write the CSV of pairs
-  PairColumns columns = {};  // additional columns of that CSV
+  PairColumns columns = {};  // additional columns of the CSV of pairs
   bool certificates = false;
-  /// Returns the pairs of objects of a frame that are not tested. If empty, options.ignored is
-  /// used.
+  /// Returns the pairs of objects of a frame that are not tested. If the function is null,
+  /// options.ignored is used.
   std::function<std::vector<ObjectPair>(const Scene&)> ignored = {};
 };
 
 /// Milliseconds of a frame, for candidates and exact tests together. Reading and accounting are not
 /// included.
 struct FrameTimes {
-  double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
+  double median = 0, p95 = 0, max = 0;  // p95: 95th percentile by nearest rank
   FARCULL_FIELDS(median, p95, max)
 };
 /// Returns the frames per second if a frame takes `ms` milliseconds. Empty if the result is
@@ -47,10 +47,10 @@ FrameTimes summary_of(std::vector<double> ms);
 struct FrameReport {
   const nlohmann::ordered_json& head;     // entries of the record that hold for all frames
   const nlohmann::ordered_json& frame;    // an element of `frames` in the record
-  const nlohmann::ordered_json& summary;  // of the frames up to this one
+  const nlohmann::ordered_json& summary;  // totals of the frames up to this one
   std::string rows;                       // rows of a table for people
   std::string pairs_csv;                  // rows of CSV, with a column `frame`
-  long number = 0;                        // of the frame
+  long number = 0;                        // number of the frame
   std::string certificate;                // empty if FramesQuestion::certificates is false
 };
 using FrameSink = std::function<void(const FrameReport&)>;
@@ -60,8 +60,8 @@ using FrameSink = std::function<void(const FrameReport&)>;
 class FrameRecord {
  public:
   explicit FrameRecord(std::string path) : output_(std::move(path)) {}
-  /// Adds a frame. head: an object, may be empty; used only in the first call. summary: of all
-  /// frames up to this one. Throws Error as GrowingOutput does.
+  /// Adds a frame. head: an object, may be empty; used only in the first call. summary: totals of
+  /// all frames so far. Throws Error as GrowingOutput does.
   void add(const nlohmann::ordered_json& head, const nlohmann::ordered_json& frame,
            const nlohmann::ordered_json& summary);
   void add(const FrameReport& report) { add(report.head, report.frame, report.summary); }
@@ -73,11 +73,11 @@ class FrameRecord {
 };
 
 struct FramesResult {
-  nlohmann::ordered_json json;  // docs/record.md; with a sink, without `frames`
-  std::string table;            // for people; with a sink, without the rows of frames
-  std::string pairs_csv;        // empty with a sink
+  nlohmann::ordered_json json;  // docs/record.md; `frames` is left out if there is a sink
+  std::string table;            // text for people; without rows of frames if there is a sink
+  std::string pairs_csv;        // empty if there is a sink
   std::string broken;           // the first guarantee that was broken; empty: none
-  Accounting sum;               // over all frames, without examples
+  Accounting sum;               // totals over all frames, without examples
   NothingToTest nothing;        // why no frame has a pair to test; empty if a frame has one
 };
 

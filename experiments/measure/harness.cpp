@@ -35,14 +35,14 @@ Spread spread_of(std::vector<double> values) {
   std::vector<double> medians(kResamples), drawn(n);
   for (double& median : medians) {
     for (double& value : drawn) {
-      // Not std::uniform_int_distribution, which differs between libraries. The bias of this index
-      // is below n / 2^32.
+      // std::uniform_int_distribution is not used, since it differs between libraries. The bias of
+      // this index is below n / 2^32.
       value = values[((generator() >> 32) * n) >> 32];
     }
     median = middle_of(drawn);
   }
   std::ranges::sort(medians);
-  const std::size_t cut = kResamples / 40;  // 2.5 %
+  const std::size_t cut = kResamples / 40;  // 2.5 % of the medians
   return {.median = middle(values),
           .min = values.front(),
           .max = values.back(),

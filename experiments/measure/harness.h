@@ -35,7 +35,7 @@ struct Spread {
   std::size_t n = 0;
   FARCULL_FIELDS(median, min, max, low, high, n)
 };
-/// All 0 if there are no values.
+/// Returns the statistics of the values; all are 0 if there are no values.
 Spread spread_of(std::vector<double> values);
 nlohmann::ordered_json to_json(const Spread& spread);
 
@@ -67,8 +67,8 @@ struct Timed {
 /// negative for a warm-up.
 using TimedRun = std::function<double(std::size_t contestant, int round)>;
 
-/// Runs all contestants in turn, round after round, so that a slow moment of the machine falls on
-/// all of them. An exception of `run` ends the measurement.
+/// Runs all contestants in turn, round after round, so that a temporary slowdown of the machine
+/// affects all of them. An exception of `run` ends the measurement.
 std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& rounds,
                                     const TimedRun& run);
 
@@ -77,7 +77,7 @@ std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& round
 /// The colliding pairs of a scene, by exact predicates on every pair whose boxes meet
 /// (verify/exact.h).
 struct TruePairs {
-  std::vector<TrianglePair> pairs;  // sorted; with neighbours
+  std::vector<TrianglePair> pairs;  // sorted; includes neighbours
   std::uint64_t triangles = 0;      // number of triangles in the pairs
   double ms = 0;                    // time of finding the pairs
 };
@@ -85,8 +85,8 @@ struct TruePairs {
 /// Returns the triangles that are in a pair, each once, ascending.
 std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
 
-/// Returns the truth without neighbours: pairs of triangles of one object that share a vertex
-/// position. Other libraries leave these pairs out.
+/// Returns the truth without neighbours, which are two triangles of one object that share a vertex
+/// position. Other libraries leave out neighbours.
 TruePairs without_neighbours(const Scene& scene, const TruePairs& truth);
 
 /// How an answer differs from the truth. Neighbours count as any other pair.
@@ -119,7 +119,7 @@ class MeasurementContext {
   /// frame of the scene's motion; negative: the scene has no motion. frames: the number of frames
   /// of the motion.
   const Scene& scene(const std::string& name, long frame = -1, long frames = 0);
-  /// Returns the scene that `make` returns, and keeps it under that name.
+  /// Returns the scene that `make` makes, and keeps the scene under that name.
   const Scene& scene(const std::string& name, const std::function<Scene()>& make);
   /// Returns the last scene. Precondition: scene() was called.
   const Scene& current() const;

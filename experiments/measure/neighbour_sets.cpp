@@ -42,9 +42,9 @@ SquaredRange range_of(const Box& a, const Box& b) {
 // limit is infinite, and the box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
-// For an object a, let the bound be the least value, over all other objects, of the largest
-// distance between the boxes. Object b may be nearest to a if the least distance of their boxes is
-// at most this bound. The same bound chooses the triangles by their boxes.
+// For an object a, the bound is the minimum, over all other objects, of the largest distance
+// between the two boxes. Object b may be nearest to a if the least distance of their boxes is at
+// most the bound. The triangles are chosen by the same bound, with their boxes.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -118,10 +118,10 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
 }
 
 // For each object, counts the triangles of other objects in its pairs, each triangle once. The
-// pairs (a, b) are sorted, with a < b, and an object's triangles have consecutive numbers. So all
-// pairs with a in one object are consecutive. So are all pairs of one triangle a with one object.
-// So it is enough to remember the object of the last a for each b, and the last a for each object
-// of b.
+// pairs (a, b) are sorted, with a < b, and the triangles of an object have consecutive numbers. So
+// all pairs whose a is in one object are consecutive. All pairs of one a with the triangles of one
+// object are consecutive, too. So it is enough to store, for each b, the object of its last a, and
+// for each object of b, the last a.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -165,7 +165,7 @@ std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& 
       out[object].objects.push_back(other);
       out[object].triangles.push_back(nearest->pair);
     };
-    // Pairs of objects come sorted, so the others of one object come ascending.
+    // Pairs of objects are sorted, so each object gets its nearest objects in ascending order.
     add(near.objects.a, near.objects.b);
     add(near.objects.b, near.objects.a);
   }

@@ -1,6 +1,6 @@
-// Potential neighbour sets (PNS). The set of an object has the other objects, and their triangles,
-// that may be nearest to the object. Four methods compute such sets. Their sizes are compared.
-// Exact distances show which nearest neighbours a method loses.
+// Potential neighbour sets (PNS). The set of an object has the other objects that may be nearest to
+// it, and those of their triangles that may be nearest. Four methods compute such sets. The sizes
+// of the sets are compared. Exact distances show which nearest neighbours a method loses.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace farcull {
 /// The objects nearest to one object. All have the same distance by exact arithmetic.
 struct NearestObjects {
   std::vector<std::uint32_t> objects;   // ascending; empty if there is no other object
-  std::vector<TrianglePair> triangles;  // for each of `objects`, the first nearest pair
+  std::vector<TrianglePair> triangles;  // for each of `objects`, its first nearest pair
 };
 
 /// Returns the nearest objects of each object, by exact arithmetic (verify/closest.h).
@@ -38,7 +38,7 @@ struct NeighbourOptions {
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 64;   // cells of a Voronoi diagram along the longest side of the scene
   double widening = 1;   // for voronoi_reliable (VoronoiOptions)
-  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
+  unsigned threads = 0;  // 0: one per core; the number changes no answer
   std::uint64_t most_pairs = std::uint64_t{1} << 25;  // VoronoiOptions::most_pairs; 268 MB
 };
 
@@ -48,8 +48,8 @@ struct NeighbourSets {
   /// For trees and voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
   bool has_pairs = false;
   std::vector<TrianglePair> pairs = {};
-  /// For boxes and voronoi: for each pair of objects (a, b), the number of triangles of a that are
-  /// left, then the number of triangles of b.
+  /// For boxes and voronoi: for each pair of objects (a, b), the number of triangles of a that may
+  /// be nearest to b, then the number of triangles of b that may be nearest to a.
   std::vector<std::array<std::uint64_t, 2>> left = {};
   /// Why there are no sets: too many pairs, or not enough memory. Empty if there are sets.
   std::string left_out = {};
@@ -64,15 +64,15 @@ NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options
 struct SetSize {
   std::uint64_t objects = 0, triangles = 0;
 };
-/// One value per object of the scene.
+/// Returns one value per object of the scene.
 std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
 
 /// True if the pair (a, b) or (b, a) is in sets.objects.
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 
-/// Sizes of the sets, and how many nearest neighbours they miss. A nearest pair of triangles is
-/// missed if NeighbourSets::pairs does not hold the pair. Without such pairs, it is missed if the
-/// pair of objects is missed.
+/// Sizes of the sets, and how many nearest neighbours the sets miss. A nearest pair of triangles is
+/// missed if NeighbourSets::pairs lacks the pair. If the method gives no pairs of triangles, the
+/// pair is missed if the pair of objects is missed.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // objects whose set holds none of their nearest objects
@@ -88,7 +88,7 @@ struct NeighbourSizes {
                  set_objects, median_objects, most_objects, set_triangles, median_triangles,
                  most_triangles)
 };
-/// truth: what nearest_objects() returns for the scene. Precondition: sets.left_out is empty.
+/// truth: the result of nearest_objects() for the scene. Precondition: sets.left_out is empty.
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth);
 

@@ -1,5 +1,5 @@
-// Times frames in which the first object turns a little. New calls, one Collider and peers run in
-// turn. In each frame, the pairs are compared with the pairs of a new call.
+// Times frames in which the first object turns a little. New calls of the library, one Collider and
+// peers run in turn. In each frame, their pairs are compared with the pairs of a new call.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -59,7 +59,7 @@ std::optional<double> cpu_ratio(const PoseBenchResult& result, const PoseBenchRo
   return row.cpu_ms / result.rows[*result.fastest_peer].cpu_ms;
 }
 
-// A row of the result, and the function that is timed for it.
+// A row of the result, and the function that is timed for the row.
 struct Contestant {
   PoseBenchRow row;
   PoseRun run;
@@ -94,7 +94,7 @@ std::vector<Contestant> ours(const Scene& scene, const PoseBenchOptions& options
     return pairs_of(collider->find({.poses = poses}));
   };
   kept(frames(-2));
-  kept(frames(-1));  // makes the trees
+  kept(frames(-1));  // the Collider makes its trees in this call
   add("boxes", watch.ms(), kept);
   return out;
 }

@@ -1,5 +1,5 @@
-// Groups the pairs of triangles that meet by their objects, which gives the objects that meet. Then
-// compares boxes to find other pairs of objects that may be near or contained.
+// Groups the colliding pairs of triangles by their objects, which gives the pairs of objects that
+// meet. Then compares boxes to find other pairs of objects that may be near or contained.
 #include "experiments/method/clash.h"
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@
 namespace farcull {
 namespace {
 
-/// Facts about objects. Each is computed when it is first needed.
+/// Caches the box, surface, parts and solid of each object; computes all but the box at first use.
 class Objects {
  public:
   explicit Objects(const Scene& scene)
@@ -59,9 +59,9 @@ class Objects {
   }
 
   /// Returns `contained` if a part of `inner` is inside `outer`, `clear` if no part is inside, and
-  /// `unknown` if this is not decided, as when `outer` is not closed. Sets `point` to a corner of
-  /// the part unless the result is `clear`. Precondition: the surfaces do not meet. So one point of
-  /// a part decides (experiments/method/distances.cpp). Only points in the box of `outer` count.
+  /// `unknown` if this is undecided, for example because `outer` is not closed. Unless the result
+  /// is `clear`, sets `point` to a corner of that part. Precondition: the surfaces do not meet, so
+  /// one point decides for its whole part (experiments/method/distances.cpp).
   ClashVerdict containment(std::uint32_t outer, std::uint32_t inner, Vec3& point) const {
     const Object& object = scene_.objects[inner];
     bool any = false;
@@ -99,11 +99,11 @@ class Objects {
   std::vector<Box> boxes_;
 };
 
-/// The pairs of triangles that meet, sorted by their objects. One row for each pair of objects.
+/// The pairs of triangles that meet, sorted by their objects, and one row for each pair of objects.
 struct Meetings {
   std::vector<TrianglePair> pairs;
   std::vector<ClashRow> rows;
-  std::vector<std::size_t> first;  // index of each row's first pair; at the end pairs.size()
+  std::vector<std::size_t> first;  // each row's first index in `pairs`; last: pairs.size()
 };
 
 Meetings meetings_of(const Scene& scene, std::vector<TrianglePair> pairs) {
@@ -138,9 +138,8 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
     } else {
       row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
     }
-    // Skips segments of coplanar triangles, since they may be diagonals of flat faces. A segment on
-    // a real edge of a closed part is found with the edge's other triangle, which is in another
-    // plane.
+    // Skips segments of coplanar triangles, which may be diagonals of flat faces. A segment on a
+    // real edge of a closed part is found with the edge's other triangle as well.
     if (contact.dimension != 1 || contact.kind == ContactKind::coplanar) continue;
     const auto& [p, q] = contact.ends;
     ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
@@ -149,7 +148,7 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
   row.witness = {common.points[0], common.points[0]};
   const std::uint64_t crossing = row.kinds[static_cast<std::size_t>(ContactKind::crossing)];
   if (crossing > 0) row.verdict = ClashVerdict::clash;
-  // A segment on a common edge of two triangles was found twice.
+  // Removes duplicates: a segment on an edge is found with each of the edge's two triangles.
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const auto& [p, q] : ends) {
@@ -176,7 +175,7 @@ void decide_touch(const Scene& scene, const Objects& objects, std::span<const Tr
 /// Records likely faults of the input: copies of objects, and objects in different units.
 void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record) {
   constexpr std::size_t kMostCopies = 100;
-  // kRounding: relative error of rounding to floats. kFar: ratio of sizes.
+  // kRounding: relative error of rounding to floats. kFar: ratio of sizes that is suspicious.
   constexpr double kRounding = 1e-6, kFar = 100;
   const std::vector<Box>& boxes = objects.boxes();
   std::vector<std::uint32_t> order;
@@ -208,7 +207,7 @@ void note_parts(const Objects& objects, const Scene& scene, ClashRecord& record)
 /// largest faces that meet, and the sums and differences of two or three of these normals.
 std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> pairs) {
   constexpr std::size_t kMostFound = 64, kMost = 6;
-  constexpr double kSame = 0.999;              // cosine of directions that count as one
+  constexpr double kSame = 0.999;              // cosine above which directions are equal
   std::vector<std::pair<double, Vec3>> faces;  // area, normal
   for (const TrianglePair& pair : pairs) {
     for (const std::uint32_t triangle : {pair.a, pair.b}) {
@@ -225,7 +224,7 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   }
   std::ranges::stable_sort(faces, std::greater(), [](const auto& face) { return face.first; });
   faces.resize(std::min(faces.size(), kMost));
-  std::array<std::vector<Vec3>, 3> sums;  // sums[k] has sums of k + 1 normals
+  std::array<std::vector<Vec3>, 3> sums;  // sums[k]: signed sums of k + 1 normals
   for (const auto& [area, normal] : faces) {
     for (const std::size_t k : {2u, 1u}) {
       for (const Vec3& sum : std::vector<Vec3>(sums[k - 1]))
@@ -243,8 +242,9 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
 }
 
 /// Bounds the depth if options.depth is set. If the upper bound of the depth is at most the
-/// tolerance, the verdict becomes `touch`. Else sets ClashRow::shallow. pairs: the triangles that
-/// meet; empty if one object contains the other. Precondition: each object is closed.
+/// tolerance, the verdict becomes `touch`. If the tolerance is between the bounds and no deep point
+/// is found, sets ClashRow::shallow. pairs: the triangles that meet; empty if one object contains
+/// the other. Precondition: each object is closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
@@ -262,9 +262,9 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
     Penetration found =
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
     if (found.hi > tolerance) {
-      // A point of one surface is deep if it is farther inside the other object than the tolerance.
-      // Then no translation by the tolerance moves it out. The distance is rounded, so this is no
-      // proof.
+      // A point is deep if it is inside an object, farther than the tolerance from the object's
+      // surface. It stays inside if it moves by the tolerance. The distance is rounded, so this is
+      // no proof.
       const auto is_deep = [&](const Vec3& p) {
         return std::ranges::any_of(std::array{&a, &b}, [&](const ClosedObject* solid) {
           return solid->has(p) && (solid->nearest(p) - p).norm() > tolerance;
@@ -279,7 +279,7 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
       if (found.lo > tolerance || is_deep(row.witness[0]) ||
           std::ranges::any_of(some, [&](const auto& p) { return has_deep(p.a) || has_deep(p.b); }))
         return;
-      // With a limit the search may have ended before it had a lower bound.
+      // A search with a limit may give no lower bound, so this search has no limit.
       found = row.depth ? *row.depth : penetration(a, b, starts, options.threads);
       row.shallow = found.lo <= tolerance && found.hi > tolerance;
       if (row.shallow && std::isfinite(found.hi)) row.depth = found;
@@ -304,7 +304,7 @@ bool is_asked(const ClashOptions& options, const ObjectPair& pair) {
   return !options.only || std::ranges::binary_search(*options.only, pair);
 }
 
-/// Returns rows for objects that do not meet, but are near or may be contained.
+/// Returns rows for objects that do not meet: near pairs, and pairs with possible containment.
 std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
                                  const ClashOptions& options, std::span<const ClashRow> meeting,
                                  const Progress& progress, ClashRecord& record) {
@@ -362,8 +362,8 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
   return rows;
 }
 
-/// True if x comes before y. The order is: rows that are not ignored first, then by verdict. Equal
-/// verdicts: less distance, more depth, longer curve, lower objects first.
+/// True if x comes before y. Rows that are not ignored come first. Then these decide in turn: the
+/// verdict, a smaller distance, a larger depth, a longer curve, lower numbers of the objects.
 bool more_serious(const ClashRow& x, const ClashRow& y) {
   if (x.ignored != y.ignored) return y.ignored;
   if (x.verdict != y.verdict) return x.verdict < y.verdict;

@@ -19,11 +19,10 @@
 namespace farcull {
 
 /// The relation of two objects, the most serious first.
-/// clash: the surfaces cross, or the insides overlap, or the objects meet and there is no proof
-/// that
-///   they only touch (ClashRow::proved).
+/// clash: the surfaces cross, or the insides overlap, or the surfaces meet and there is no proof
+///   that the objects only touch (ClashRow::proved).
 /// contained: the surfaces do not meet, and a part of one object is inside the other object.
-/// unknown: perhaps `contained`, but exact tests did not decide (overlap_at() in verify/overlap.h).
+/// unknown: maybe `contained`, but exact tests did not decide (overlap_at() in verify/overlap.h).
 /// touch: the surfaces meet, and it is proved that the insides do not overlap.
 /// near: the objects do not meet, and their distance is at most the clearance.
 /// clear: none of these.
@@ -37,11 +36,11 @@ std::string to_string(ClashVerdict verdict);
 
 struct ClashOptions {
   double clearance = 0;                  // world units, finite, >= 0
-  std::vector<ObjectPair> ignored = {};  // examined, but counted and listed apart; by in_order()
-  std::optional<std::vector<ObjectPair>> only = {};  // examines only these pairs; by in_order()
-  double tolerance = 0;  // world units, finite, >= 0; a depth or gap up to this is a touch
+  std::vector<ObjectPair> ignored = {};  // examined, but listed separately; sorted by in_order()
+  std::optional<std::vector<ObjectPair>> only = {};  // examines only these; sorted by in_order()
+  double tolerance = 0;  // world units, finite, >= 0; a depth or gap <= this is a touch
   bool depth = false;    // bounds the depth of clashes, which is slow with many triangles
-  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
+  unsigned threads = 0;  // 0: one per core; the answer does not depend on it
 };
 
 struct ClashRow {
@@ -49,38 +48,38 @@ struct ClashRow {
   ClashVerdict verdict = ClashVerdict::clear;
   ClashVerdict exact = ClashVerdict::clear;  // the verdict with a tolerance of 0
   bool ignored = false;
-  bool proved = true;    // false: perhaps the objects only touch, but this counts as a clash
-  bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no deeper
-                         // point was found, as when a part fits tightly in a slot
+  bool proved = true;    // false: counts as a clash, but the objects may only touch
+  bool shallow = false;  // true: the tolerance lies between the bounds of the depth, and no point
+                         // deeper than the tolerance was found
   std::uint64_t pairs = 0;                                     // pairs of triangles that meet
-  std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // `pairs` by kind of contact
+  std::array<std::uint64_t, kContactKinds.size()> kinds = {};  // `pairs` counted by kind
   std::optional<std::uint32_t> inner = {};      // for contained and unknown: the inner object
   std::optional<SquaredDistance> squared = {};  // squared distance of the surfaces; set only if 0 <
                                                 // distance <= max(clearance, tolerance)
-  double distance = 0;                          // root of `squared`, rounded once
+  double distance = 0;                          // square root of `squared`, rounded once
   Box box = Box::empty();  // box of the common points, the inner object or the two nearest points
-  /// A common point twice, or a corner of the inner object twice, or the two nearest points.
-  /// Rounded.
+  /// A common point twice, a corner of the inner object twice, or the two nearest points.
+  /// Coordinates are rounded.
   std::array<Vec3, 2> witness = {Vec3::Zero(), Vec3::Zero()};
   double curve = 0;  // length of the curve in which the surfaces cross
   std::vector<std::array<Vec3, 2>> segments =
-      {};                                  // segments of that curve, each once; ends rounded
+      {};                                  // distinct segments of the curve; ends are rounded
   std::optional<Penetration> depth = {};   // null: not computed
-  std::optional<std::uint32_t> open = {};  // an object that is not closed, so there is no depth
+  std::optional<std::uint32_t> open = {};  // an object that is not closed; `depth` is then null
   bool within_tolerance() const { return verdict != exact; }
 };
 
 struct ClashRecord {
   ClashOptions options;
-  std::uint64_t asked = 0;         // pairs of objects, without ignored pairs
-  std::uint64_t examined = 0;      // pairs in `asked` where each object has triangles
+  std::uint64_t asked = 0;         // pairs of objects to examine, without ignored pairs
+  std::uint64_t examined = 0;      // pairs in `asked` whose two objects have triangles
   std::uint64_t ignored = 0;       // ignored pairs
   std::uint64_t ignored_meet = 0;  // ignored pairs with a row that is not `near`
-  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // `examined` by verdict
+  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // `examined`, by verdict
   std::uint64_t within_tolerance = 0;  // pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
-  /// At most 100 pairs of objects that may be copies of one part: with the same number of
-  /// triangles, and with the same box up to rounding to floats.
+  /// At most 100 pairs of objects that may be copies of one part. They have the same number of
+  /// triangles, and the same box up to rounding to floats.
   std::vector<ObjectPair> copies;
   /// The smallest and the largest object, if their sizes differ by a factor of 100 or more.
   std::optional<ObjectPair> sizes;
@@ -101,7 +100,7 @@ struct ClashRecord {
 /// two objects, or if the clearance or the tolerance is negative or not finite.
 ClashRecord clashes(const Scene& scene, const ClashOptions& options, const Progress& progress = {});
 
-/// Returns the diagonal of an object's box.
+/// Returns the length of the diagonal of the object's box.
 double size_of(const Scene& scene, std::uint32_t object);
 
 }  // namespace farcull

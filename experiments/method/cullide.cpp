@@ -1,6 +1,6 @@
-// FAR and the CULLIDE family. Boxes find the triangles that have to be drawn. A canvas culls these
-// triangles in each view, with one offset after the other. Then the boxes of the remaining
-// triangles are joined.
+// FAR and the CULLIDE family. Boxes select the triangles to draw. A canvas culls these triangles in
+// each view, with one offset after the other. Candidates are pairs of remaining triangles whose
+// boxes overlap.
 #include <algorithm>
 #include <iterator>
 
@@ -19,13 +19,13 @@
 namespace farcull {
 namespace {
 
-// True if stages may be left out. With a guaranteed method this loses no pair.
+// True if stages may be skipped. This loses no pair, since the method is guaranteed to miss none.
 bool is_thrifty(const RunOptions& options) {
   return guaranteed(options) && !options.full && !options.no_shortcuts;
 }
 
-// Returns the offsets in the order in which they are tried. Each offset gets the triangles that the
-// previous offset left.
+// Returns the offsets in the order of use. Each offset is applied to the triangles that remain
+// after the previous offset.
 std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
@@ -149,8 +149,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
   out.by = std::move(views);
 }
 
-// Compares boxes of objects, as in the published method, to find the triangles and the regions to
-// draw.
+// Compares boxes of objects, as published, to find the triangles and the regions to draw.
 void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   if (!work.self && has_self(scene)) {
@@ -194,8 +193,8 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.ran = true;
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
-  // Here each object is one owner. Below, objects that are tested against themselves are cut into
-  // patches, when the triangles that are drawn are known.
+  // At first each object is one owner. This gives the triangles to draw. Then objects that are
+  // tested against themselves are cut into patches, and each patch is an owner.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
   work.regions = regions_of(scene, work.pairs->drawn);
   stage.out = work.regions.triangles.size();

@@ -30,7 +30,7 @@
 namespace farcull {
 namespace {
 
-// Checks fattened triangles of every kind, then (`direct`) solids with random floats.
+// Checks a kernel with fattened triangles of every kind, then (`direct`) with random solids.
 KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
                    const SolidKernel& kernel) {
   SolidProgram solid = kernel.program;
@@ -83,8 +83,8 @@ std::string driver_environment() {
   for (char** at = environ; at != nullptr && *at != nullptr; ++at) {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
-    // Mesa also reads each driconf option from the environment variable of its name, in lower case.
-    // Other variables in lower case are rare, except those of proxies.
+    // Mesa also reads each driconf option from an environment variable with the option's lower-case
+    // name. Other variables in lower case are rare, except proxy settings.
     const std::string name = variable.substr(0, variable.find('='));
     const bool may_be_driconf =
         std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }) && name != "_" &&
@@ -103,7 +103,7 @@ std::string hash_of(const std::string& text) {
   return hash.hex();
 }
 
-// Returns the model and the features of the processor. A software device generates code for these.
+// Returns the processor's model and features, on which the code of a software device depends.
 std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   std::string line, out;
@@ -133,8 +133,8 @@ std::string text_of(const VerdictInputs& inputs) {
   return out;
 }
 
-// Returns the file of a verdict in $XDG_CACHE_HOME/farcull, or if that is no absolute path, in
-// $HOME/.cache/farcull. Returns "" if neither variable has an absolute path.
+// Returns the path of the verdict's file: in $XDG_CACHE_HOME/farcull if that path is absolute, else
+// in $HOME/.cache/farcull. Returns "" if neither variable has an absolute path.
 std::string file_of(const std::string& inputs) {
   const auto absolute = [](const char* path) { return path != nullptr && path[0] == '/'; };
   const char* const cache = std::getenv("XDG_CACHE_HOME");
@@ -145,7 +145,7 @@ std::string file_of(const std::string& inputs) {
 }
 
 // Reads the verdict. Returns nothing if the file is missing, is damaged, belongs to another user,
-// or has other inputs.
+// or was written for other inputs.
 std::optional<DeviceVerdict> read(const std::string& file, const std::string& inputs) {
   struct stat status {};
   if (file.empty() || ::lstat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
@@ -167,8 +167,8 @@ std::optional<DeviceVerdict> read(const std::string& file, const std::string& in
   return out;
 }
 
-// Returns why the file could not be written; "" if it was written. A reader sees either the old
-// file or the new file, never a part.
+// Writes the file. Returns the reason of a failure, or "". A reader sees either the old file or the
+// new file, never a partial one.
 std::string write(const std::string& file, const std::string& text) {
   if (file.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
   const std::string beside = file + "." + std::to_string(::getpid());
@@ -234,7 +234,7 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
   if (started) started("kernels");
   for (ProbeResult& r : solid_kernel_probes(context)) out.push_back(std::move(r));
   std::ranges::stable_sort(out, {}, [](const ProbeResult& r) {
-    return std::pair(r.assumption.size(), r.assumption);  // A10 after A2
+    return std::pair(r.assumption.size(), r.assumption);  // sorts A10 after A2
   });
   return out;
 }
@@ -314,7 +314,7 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (!out.holds && !file.empty() && !fs::remove(file, error) && error)
     fs::resize_file(file, 0, error);
   if (!out.holds && out.failed.empty()) return out;
-  // Line by line: the hash of all lines below it, the inputs, three values, the failures.
+  // Lines of the file: a hash of all following lines, the inputs, three values, the failures.
   std::ostringstream rest;
   rest << inputs << out.made << ' ' << out.probes << ' ' << ms << '\n';
   for (const std::string& failure : out.failed) rest << failure << '\n';

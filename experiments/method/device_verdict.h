@@ -30,15 +30,15 @@ struct SolidKernel {
 /// Returns the kernels of the two offsets.
 std::vector<SolidKernel> solid_kernels();
 
-/// `bare` and `late_stores` are deliberate defects, with which tests check that the probes fail.
+/// `bare` and `late_stores` are deliberate defects. Tests use them to check that the probes fail.
 struct KernelProbeOptions {
   std::uint64_t seed = 1;
-  bool bare = false;         // the kernels widen nothing
-  bool late_stores = false;  // the probe stores a wrong solid
+  bool bare = false;         // the kernels do not widen intervals (FAR_WIDEN)
+  bool late_stores = false;  // the probe stores the solid of the next case
 };
 
 /// Probes solid_interval of the two offsets. A probe fails if a solid was lost, if too many answers
-/// are loose, if nothing was checked, or if an Error is thrown. The context is current meanwhile.
+/// are too wide, if nothing was checked, or if an Error is thrown. Makes the context current.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});
 
@@ -49,14 +49,14 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
                                     const std::function<void(const std::string&)>& started = {},
                                     bool brief = false);
 
-/// Returns the current time, as in 2026-01-31T12:00:00Z.
+/// Returns the current UTC time, such as 2026-01-31T12:00:00Z.
 std::string utc_now();
 
 struct DeviceVerdict {
   bool holds = false;               // every probe passed
   std::vector<std::string> failed;  // failed probes, as in "A2 snapping: 0.0078 px, bound 0.0039"
   std::string problem;              // which probe did not finish, and why; empty: all finished
-  std::string made;                 // when the probes ran, as by utc_now()
+  std::string made;                 // time of the probes, in the form of utc_now()
   std::size_t probes = 0;           // how many probes ran
   double ms = 0;                    // time of the probes
   bool remembered = false;          // true: the verdict was read from the file
@@ -64,7 +64,7 @@ struct DeviceVerdict {
   std::string note;                 // why the file could not be written
 };
 
-/// Says in one sentence, without a full stop, what the probes found.
+/// Returns the result of the probes in one sentence, without a full stop.
 std::string to_string(const DeviceVerdict& verdict);
 
 /// Names and values of everything that can change the results of probes: the device, its driver,
@@ -73,20 +73,19 @@ std::string to_string(const DeviceVerdict& verdict);
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
 VerdictInputs verdict_inputs(const GlInfo& device);
 
-/// Runs the probes that a verdict rests on.
 using Probes = std::function<std::vector<ProbeResult>()>;
 
 /// Receives a line of text for the user.
 using Say = std::function<void(const std::string& line)>;
 
-/// Returns the verdict that the file keeps. If there is no such file, runs `probes`, and keeps and
-/// returns their verdict. A file is ignored and written anew if it is damaged, belongs to another
-/// user, or has other inputs. Errors of the file system do not throw. Exceptions of `probes` pass.
-/// say: gets a line before the probes run, and a line if the verdict cannot be kept.
+/// Returns the verdict that is stored in its file. If there is no such file, runs `probes`, then
+/// stores and returns their verdict. A file that is damaged, belongs to another user, or has other
+/// inputs is ignored and replaced. Errors of the file system do not throw. Exceptions of `probes`
+/// are passed on. say: gets a line before the probes run, and a line if storing fails.
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say = {});
 
 /// Makes a verdict from the results of probes. Replaces the older file of the verdict. If a probe
-/// broke off and no probe failed, only removes the older file.
+/// did not finish and no probe failed, only removes the older file.
 DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>& results,
                            double ms);
 

@@ -1,5 +1,5 @@
-// Distances. Trees of boxes (core/proximity) find candidate pairs. Exact arithmetic decides these
-// pairs.
+// Distances between objects. Trees of boxes (core/proximity) find candidate pairs of triangles.
+// Exact arithmetic finds the nearest of these pairs.
 #include "experiments/method/distances.h"
 
 #include <algorithm>
@@ -34,10 +34,10 @@ std::vector<Vec3> point_of_each_part(const Scene& scene, const Object& object) {
   corners.reserve(3 * std::size_t{object.triangle_count});
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
     for (const Vec3& p : scene.corners(object.first_triangle + t))
-      corners.push_back({{p.x(), p.y(), p.z()}, t});  // -0.0 compares as 0.0
+      corners.push_back({{p.x(), p.y(), p.z()}, t});  // -0.0 equals 0.0
   }
   std::ranges::sort(corners, {}, &Corner::place);
-  std::vector<std::uint32_t> leader(object.triangle_count);  // the lowest triangle of the part
+  std::vector<std::uint32_t> leader(object.triangle_count);  // union-find; root: lowest triangle
   std::iota(leader.begin(), leader.end(), 0u);
   const auto leader_of = [&](std::uint32_t t) {
     while (leader[t] != t) t = leader[t] = leader[leader[t]];
@@ -69,8 +69,8 @@ Insides::Insides(const Scene& scene) : scene_(scene), objects_(new OfObject[scen
 }
 Insides::~Insides() = default;
 
-// True if all of `inner` lies inside `outer`. Sets not_closed if there is no answer, since `outer`
-// is not closed.
+// True if all of `inner` lies inside `outer`. Sets not_closed if the boxes are nested but `outer`
+// is not closed, so that it has no inside.
 bool Insides::contains(std::uint32_t outer, std::uint32_t inner, bool& not_closed) const {
   OfObject& in = objects_[inner];
   OfObject& out = objects_[outer];
@@ -174,7 +174,7 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
   return out;
 }
 
-// Keeps the distances that are among the k nearest of one of their objects.
+// Keeps each distance that is among the k smallest of at least one of its two objects.
 void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& distances) {
   std::vector<bool> wanted(distances.size());
   for (const NearestOfObject& of : nearest_of_objects(scene, distances, k)) {
@@ -185,7 +185,7 @@ void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& dist
   });
 }
 
-// Decides ties for the search. If many pairs are equally near, the search keeps only out.pair.
+// Finds the nearest pair exactly. ProximityTrees then drops the other pairs of equal distance.
 SettledPair settled(const Scene& scene, std::span<const TrianglePair> pairs) {
   const NearestPair nearest = *nearest_pair(scene, pairs);
   SettledPair out;
@@ -204,7 +204,7 @@ ProximityTrees trees_of(const Scene& scene, unsigned threads) {
   });
 }
 
-// questions: pairs of objects; left: pairs of triangles.
+// questions: number of pairs of objects; left: number of remaining pairs of triangles.
 void add_near_stage(std::size_t questions, std::uint64_t left, double ms, DistanceRecord& record) {
   record.trace.push_back({.kind = StageKind::near,
                           .ran = true,
@@ -278,14 +278,13 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
   record.trace.push_back(stage);
 }
 
-// Finds all pairs of triangles within the distance that are no neighbours.
+// Finds all pairs of triangles, except neighbours, at a distance of at most options.within.
 void between_triangles(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   const DistanceOptions& options = record.options;
   Stopwatch watch;
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, options.threads);
-  // The limit is a quarter higher here, since exact arithmetic removes pairs that are too far
-  // apart.
+  // Allows a quarter more candidates than most_pairs, since exact arithmetic removes some of them.
   const std::vector<TrianglePair> near =
       trees.pairs_within(options.within, options.most_pairs, progress, options.most_pairs / 4);
   record.counts = trees.counts();
@@ -396,7 +395,7 @@ std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     if (scene.objects[o].triangle_count == 0) continue;
     std::vector<std::size_t>& of = naming[o];
-    // At equal distance, a stable sort keeps the order of the other objects.
+    // The sort is stable, so equal distances stay in the order of the other object.
     std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
       return distances[x].closest.squared < distances[y].closest.squared;
     });
@@ -417,7 +416,7 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
     throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
-  // Each pair of objects takes memory from the start, and more for its answer.
+  // Refuses too many pairs of objects before the search, since each pair takes memory.
   if (options.pairs == DistancePairs::objects && !std::isfinite(options.within)) {
     const std::uint64_t questions = count_of_questions(scene);
     if (questions > options.most_pairs) {
@@ -442,7 +441,7 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
     find_insides(scene, progress, out);
   }
   if (memory != nullptr) {
-    DistanceMemory kept;  // so that an exception leaves `memory` as it was
+    DistanceMemory kept;  // an exception here leaves `memory` unchanged
     if (options.pairs != DistancePairs::all) {
       for (const Distance& d : out.distances) kept.push_back({d.objects, d.triangles});
     }
@@ -455,15 +454,15 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   return out;
 }
 
-// Sorts the candidates into the order of the answer. Then threads decide parts of the candidates.
+// Sorts the candidates into the order of the answer. Then threads test blocks of kTogether
+// candidates.
 std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,
                                                           unsigned threads, std::size_t most,
                                                           const Progress& progress) {
   const FloatingPointGuard guard;
   if (progress) progress(StageKind::boxes);
   const ProximityTrees trees(scene, threads);
-  // The limit is a quarter higher here, since exact arithmetic removes pairs that are too far
-  // apart.
+  // Allows a quarter more candidates than `most`, since exact arithmetic removes some of them.
   std::vector<TrianglePair> near = trees.pairs_within(within, most, progress, most / 4);
   remove_ignored(scene, scene.ignored, near);
   const std::vector<std::uint32_t> owner = owners(scene);

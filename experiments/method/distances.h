@@ -1,5 +1,6 @@
 // Finds distances between objects, with nearest points. Trees of boxes (core/proximity) find the
-// pairs of triangles that may be nearest. Exact arithmetic (verify/closest.h) decides.
+// pairs of triangles that may be nearest. Exact arithmetic (verify/closest.h) selects the nearest
+// pair.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ namespace farcull {
 
 /// objects: every two objects, and each object marked `self` with itself.
 /// nearest: each object and its k nearest other objects.
-/// all: every pair of triangles within a distance. The triangles are in different objects, or they
-///   are in one object marked `self` and are no neighbours.
+/// all: every pair of triangles within a distance. The triangles are in different objects, or in
+///   one object marked `self` and are not neighbours.
 using DistancePairs = DistanceQuestion::Kind;
 
 /// Which of two objects lies completely inside the other. unknown: not computed, or the objects
@@ -31,8 +32,8 @@ using DistancePairs = DistanceQuestion::Kind;
 /// larger box is not closed, so it has no inside (verify/inside.h).
 using WhichInside = InsideClaim;
 
-/// Tells which object of a scene lies inside another. The scene must not change, since results
-/// about its objects are kept.
+/// Finds which of two objects of a scene lies inside the other. Caches results, so the scene must
+/// not change.
 class Insides {
  public:
   explicit Insides(const Scene& scene);
@@ -60,10 +61,11 @@ struct DistanceOptions {
   DistancePairs pairs = DistancePairs::objects;
   std::size_t k = 1;                                        // only for `nearest`
   double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
-  bool inside = true;    // find whether an object is inside another
-  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
-  bool verify = false;   // account for every pair that was culled
-  /// The largest number of answers. More are an error, since each takes some hundreds of bytes.
+  bool inside = true;    // find whether one object is inside the other
+  unsigned threads = 0;  // 0: one per core; the answer does not depend on it
+  bool verify = false;   // check every pair exactly (account_distances())
+  /// The largest number of answers. More answers are an error, since each answer takes some
+  /// hundreds of bytes.
   /// - `all`: limits pairs of triangles.
   /// - `objects` and an infinite `within`: limits pairs of objects.
   /// - `objects` and a finite `within`: the number of pairs of objects whose boxes are at most
@@ -110,16 +112,16 @@ std::vector<Distance> nearest_triangles(const Scene& scene, std::span<const Obje
                                         double within, unsigned threads,
                                         const Progress& progress = {});
 
-/// Says why the options select no pair of triangles of the scene. Empty if they select a pair.
+/// Returns why the options select no pair of triangles of the scene, or "" if they select a pair.
 std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 
 /// Returns the answers of the record as claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
-/// Computes the distances that the options select. memory: the previous frame, and on return this
-/// frame; may be null. Throws Error if options are bad, if they select no pair of triangles, or if
-/// there are more answers than most_pairs allows. Throws std::logic_error if validate() would not
-/// accept the scene.
+/// Computes the distances that the options select. memory: holds the nearest pairs of the previous
+/// frame, and on return those of this frame; may be null. Throws Error if options are bad, if they
+/// select no pair of triangles, or if there are more answers than most_pairs allows. Throws
+/// std::logic_error if validate() would not accept the scene.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
 
@@ -130,7 +132,7 @@ struct TriangleContact {
   NearContact contact;
 };
 
-/// Returns the pairs of triangles that distances() gives with `all`, sorted by objects, then by
+/// Returns the pairs of triangles that distances() returns for `all`, sorted by objects, then by
 /// triangles, and split into consecutive parts. within: world units, finite, >= 0. threads: 0 for
 /// as many as there are cores. Throws Error if there are more than `most` contacts.
 std::vector<std::vector<TriangleContact>> contacts_within(const Scene& scene, double within,

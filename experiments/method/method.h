@@ -33,12 +33,12 @@ struct Candidates;  // record.h
 struct Plan;        // plan.h
 class Session;      // session.h
 
-/// Makes all decisions that need no pixels. Sets plan.work, plan.trace and plan.ahead.
-/// Precondition: plan.options is set.
+/// Makes all decisions that do not depend on drawn pixels. Sets plan.work, plan.trace and
+/// plan.ahead. Precondition: plan.options is set.
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
-/// Runs the method: finds the candidates of the planned scene. take: receives candidates at once
-/// when a tree of boxes finds them (Candidates::streamed). If empty, candidates are listed.
+/// Runs the method: finds the candidates of the planned scene. take: receives the candidates of a
+/// tree of boxes when they are found (Candidates::streamed). If empty, candidates are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 
@@ -61,7 +61,6 @@ struct Traits {
   FindFunction* find;
 };
 
-/// Returns the method's entry in the table.
 const Traits& traits(Method method);
 
 std::span<const Method> all_methods();

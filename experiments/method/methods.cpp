@@ -127,7 +127,7 @@ std::string method_names(const std::function<bool(const Traits&)>& can) {
   return text;
 }
 
-// Exact. Decides every pair of triangles whose boxes overlap, when the join finds the pair.
+// The method `exact`. Decides each pair of triangles whose boxes overlap, as soon as it is found.
 
 void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back({.kind = StageKind::join,
@@ -164,7 +164,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   return out;
 }
 
-// I-collide (I-COLLIDE, 1995). Sweep and prune on the boxes of objects, then on boxes of triangles.
+// The method `i-collide` (1995). Sweep and prune on boxes of objects, then on boxes of triangles.
 
 void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   plan.ahead.push_back(sweep_stage(scene));
@@ -202,8 +202,6 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   out.trace.push_back(stage);
   return out;
 }
-
-// Boxes. See core/boxes/search.h.
 
 void plan_by_boxes(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
   const RunOptions& options = plan.options;

@@ -21,9 +21,10 @@ constexpr std::size_t kMostParts = std::size_t{1} << 22;  // largest number of p
 // The largest number of rounds in solve() if the options set no limit. Mostly ten rounds suffice.
 // Tens of rounds are needed if each culled triangle uncovers the next triangle.
 constexpr int kMostRepeats = 200;
-// Standard deviation (px) of the error of a triangle's height over its longest edge. Snapping moves
-// corners to multiples of 2^-b px. Along each axis, the variance of this error is 4^-b / 12. The
-// variance for the height is 5/3 of this, averaged over the positions of the height's foot.
+// Standard deviation (px) of the change that snapping makes to a triangle's height over its longest
+// edge. Snapping moves corners to multiples of 2^-b px (b: kNativeSubpixelBits). So the error along
+// each axis has the variance 4^-b / 12. The variance of the height is 5/3 of this, averaged over
+// the positions of the height's foot.
 const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
 
 struct Point2 {
@@ -99,10 +100,10 @@ Polygon hull(std::vector<Point2> of) {
 
 // Returns the sizes of an image along two axes in which the image is compact. Axes with integer
 // components and the determinant 1 map pixel centres to pixel centres. So the probability that the
-// image contains a centre is the same in all such axes. In good axes, a needle along 2:3 is a
-// narrow strip. Lagrange's reduction of the moments of the corners finds good axes. It ends when
-// the longer size is at most 1 px: then the area is the smallest bound, and the sizes do not
-// matter.
+// image contains a centre is the same in all such axes. In suitable axes, a needle in the direction
+// (2, 3) is a narrow strip. Lagrange's reduction, applied to the moments of the corners, finds
+// suitable axes. It ends if the longer size is at most 1 px, since then the area is the smallest
+// bound.
 std::array<double, 2> compact_sizes(const Polygon& image) {
   Point2 a{1, 0}, b{0, 1};
   while (true) {
@@ -125,7 +126,7 @@ std::array<double, 2> compact_sizes(const Polygon& image) {
   }
 }
 
-// The image of a triangle as it is drawn: fattened by a disc of `radius`.
+// The image of a drawn triangle, fattened by a disc if the method fattens triangles.
 struct Image {
   Polygon polygon;  // empty: not drawn, or seen edge-on
   double area = 0;
@@ -133,7 +134,7 @@ struct Image {
   std::array<double, 2> compact = {};            // compact_sizes()
   double drawn = 0;                              // probability that the image contains a centre
   double slope_x = 0, slope_y = 0, depth_0 = 0;  // depth = depth_0 + slope_x * x + slope_y * y
-  double slant = 0;    // px of depth that a ball of radius 1 px adds to the plane
+  double slant = 0;    // px that the depth changes if the plane moves by 1 px along its normal
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
@@ -145,8 +146,8 @@ double snapped_share(double width) {
          std::erf(z / std::numbers::sqrt2);
 }
 
-// Returns the rectangle around a flat polygon along the polygon's longest edge. It is the image of
-// an oriented box.
+// Returns the rectangle that encloses a flat polygon and is parallel to the polygon's longest edge.
+// The rectangle is the image of an oriented box.
 std::vector<Vec3> rectangle(std::span<const Vec3> points, const Vec3& normal) {
   Vec3 along = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -210,17 +211,17 @@ struct Part {
   double share = 0;  // area of the part / area of the image in the place
   Range x, y;
   double place = 0;  // area of the image in the place; 0 except in the place's first part
-  double strip = 0, width = 0, height = 0;  // area and sides where each hides the other
+  double strip = 0, width = 0, height = 0;  // area, sides of the region where each hides the other
 };
 
 struct ViewOfParts {
   std::vector<Image> images;         // one per triangle, without polygons
-  std::vector<std::uint32_t> first;  // index of each triangle's first part; at the end parts.size()
+  std::vector<std::uint32_t> first;  // each triangle's first index in parts; last: parts.size()
   std::vector<Part> parts;           // sorted by triangle, then by place
   double radius = 0;                 // radius of the ball in px
 };
 
-// Adds the part of `back` that `front` hides. `front` may be behind `back` by at most `near`.
+// Adds the part of `back` that `front` hides. `front` may be up to `near` behind `back`.
 void add_part(const Polygon& common, const Image& back, const Image& front, double thick,
               double near, std::uint32_t of, std::uint32_t by, std::vector<Part>& out) {
   if (back.depth.hi + near < front.depth.lo) return;
@@ -280,7 +281,7 @@ bool find_parts(const Scene& scene, const DrawPlan& work, const Window& window, 
   }
   const auto left = [&](std::uint32_t t) { return out.images[t].x.lo; };
   std::ranges::sort(order, {}, left);
-  // Depths that round to the same float are equal, and a triangle at an equal depth hides.
+  // Depths within half a step round to the same float. A triangle also hides others at equal depth.
   const double step = 0.5 * depth_step(window, 32);
   Polygon common;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -368,7 +369,6 @@ class Equations {
     before_.assign(views_.size(), now_);
   }
 
-  // Returns the probability that a pair is found.
   double found(TrianglePair pair) {
     if (owner_[pair.a] > owner_[pair.b]) std::swap(pair.a, pair.b);
     const auto& [a, b] = pair;
@@ -385,7 +385,7 @@ class Equations {
     }
     if (settings_.clear == ClearRule::all) each = (1 - a_cleared) * (1 - b_cleared);
     if (!settings_.quick) return each;
-    return each + (1 - each) * now_[0][a] * now_[1][b];  // other owners may keep a and b
+    return each + (1 - each) * now_[0][a] * now_[1][b];  // other triangles may keep a and b
   }
 
  private:
@@ -424,7 +424,7 @@ class Equations {
   }
 
   // Returns the probability that a view does not clear triangle t. surely: a triangle that is in
-  // the depth buffer.
+  // the depth buffer with probability 1.
   double seen(std::size_t v, std::uint32_t t, int side, std::uint32_t surely = UINT32_MAX) const {
     const ViewOfParts& view = views_[v];
     double none = 1;  // probability that no place contains a pixel centre
@@ -440,7 +440,7 @@ class Equations {
       }
       const double p = part.by == surely ? 1 : stored(part, side);
       open += std::log1p(-p * part.share);
-      if (p >= 0.05) {  // an unlikely part must not add its extent
+      if (p >= 0.05) {  // an unlikely part must not extend x and y
         x.add(part.x);
         y.add(part.y);
       }
@@ -452,8 +452,8 @@ class Equations {
     return std::min(1 - none, view.images[t].drawn);
   }
 
-  // Returns the probability that one pixel centre keeps a and b. Fattened triangles can hide each
-  // other, so this is possible.
+  // Returns the probability that the same pixel centre keeps both a and b. This is possible, since
+  // fattened triangles can hide each other.
   double both_seen(std::size_t v, std::uint32_t a, std::uint32_t b) const {
     const ViewOfParts& view = views_[v];
     if (!(view.radius > 0)) return 0;
@@ -469,13 +469,13 @@ class Equations {
   const CullSettings& settings_;
   const double sharpness_;
   State now_;
-  std::vector<State> before_;  // one per view: the state in which the view decides
+  std::vector<State> before_;  // one per view: the state when the view is drawn
 };
 
 }  // namespace
 
-// The error of the model: the number of missed pairs is wrong by a factor of at most 1.2. If nearly
-// all pairs are missed, the number of found pairs is wrong by a factor of at most 1.5.
+// The assumed error of the model: a factor of 1.2 in the number of missed pairs, and a factor of
+// 1.5 in the number of found pairs. The tighter of the two bounds is used.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -488,8 +488,8 @@ double MissPrediction::high() const {
 double centre_probability(double area, double width, double height, double radius,
                           double sharpness) {
   // The probability is at most the area, the width and the height. A disc in the region contains a
-  // centre with probability `disc`. Else the same bounds apply to the region without the disc, and
-  // are divided by `rest`.
+  // centre with probability `disc`. If the disc contains none, the same bounds apply to the region
+  // without the disc, divided by the probability `rest` of this case.
   const double disc = disc_share(radius), rest = 1 - disc;
   if (rest <= 0) return 1;
   const auto term = [&](double size) { return std::pow(std::max(size / rest, 1e-12), -sharpness); };

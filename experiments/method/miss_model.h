@@ -24,8 +24,8 @@ struct MissPrediction {
   double high() const;
 };
 
-/// Says why there is no prediction for these options, as for a method that misses nothing. Empty if
-/// there is a prediction.
+/// Returns why there is no prediction for these options, for example because the method misses
+/// nothing. Returns "" if there is a prediction.
 std::string why_unpredicted(const RunOptions& options);
 
 /// The predicted misses of a plan, or why there is no prediction. For a method that guarantees to
@@ -36,12 +36,12 @@ struct MissesOfPlan {
 };
 /// Finds the colliding pairs by exact tests, and predicts the misses.
 MissesOfPlan misses_of(const Scene& scene, const Plan& plan);
-/// Returns a line for people: "misses     46 of 203 colliding pairs expected, 30 to 70". Empty for
+/// Returns a line of text: "misses     46 of 203 colliding pairs expected, 30 to 70". Empty for
 /// a method with a guarantee.
 std::string misses_line(const MissesOfPlan& misses);
 
-/// Says how close centre_probability() is to its upper bound min(1, area, width, height). With an
-/// infinite value it equals the bound. The value was fitted to random triangles on random grids.
+/// Determines how close centre_probability() is to its upper bound min(1, area, width, height). An
+/// infinite value gives the bound itself. The value was fitted to random triangles on random grids.
 constexpr double kMissSharpness = 3.5;
 /// Returns the probability that a region contains a pixel centre, if all positions of the grid are
 /// equally likely. area: px^2. width, height: px. radius: px, of a disc by which the region was

@@ -1,4 +1,4 @@
-// The table of options. Reads and checks options, chooses defaults, and puts options in words.
+// The table of options. Functions that read, check and describe options, and choose defaults.
 #include "experiments/method/options.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ const std::vector<std::string> kOffsets = {
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
-// Checks only the form of the text; the device is opened when it is needed.
+// True if the text has the form of a device's name. Does not look for the device.
 bool is_device(const std::string& device) {
   return device.empty() || is_cpu(device) || device == "gl" || device == "hardware" ||
          device == "software" || device.find_first_not_of("0123456789") == std::string::npos;
@@ -31,7 +31,6 @@ Error bad_value(const Option& option, const std::string& text) {
   return {braced(option.name), "'" + text + "' is no " + option.kind, option.remedy};
 }
 
-// Reads a number that is `least` or more.
 template <class T>
 bool take_number_from(T least, const std::string& text, T& value) {
   const std::optional<T> number = parse_number<T>(text);
@@ -103,7 +102,7 @@ bool take_device(const std::string& text, RunOptions& options) {
   return is_device(text);
 }
 
-// Values of Option::serves: the methods that have an option.
+// Values of Option::serves. Each is true for the methods that have an option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
@@ -352,7 +351,7 @@ const Option kOptions[] = {
     // A new option goes here.
 };
 
-// Throws Error for an option that the method does not have, so that no request is ignored.
+// Throws Error for a given option that the method does not have, instead of ignoring it.
 void refuse_idle(const RunOptions& options, const GivenOptions& given) {
   const Traits& method = traits(options.method);
   for (const Option& option : run_options()) {
@@ -380,7 +379,7 @@ const Option& run_option(std::string_view name) {
 }
 
 std::string option_word(const std::string& name) {
-  if (name == "doctor" || name == "run") return "farcull " + name;  // two commands
+  if (name == "doctor" || name == "run") return "farcull " + name;  // commands, not options
   // These options belong to single commands.
   static constexpr std::string_view kOthers[] = {"certificate", "compare", "inside", "no_verify",
                                                  "pairs",       "repeat",  "within"};
@@ -418,7 +417,7 @@ int parse_repeat(const std::string& text) {
 
 RunOptions read_options(const GivenOptions& given, RunOptions options) {
   options.method_is_default = !given.contains("method");
-  for (const Option& option : run_options()) {  // the method is the first option
+  for (const Option& option : run_options()) {  // the method comes first in the table
     const auto found = given.find(option.name);
     if (found != given.end() && option.take) take_option(option.name, found->second, options);
   }
@@ -479,8 +478,8 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 QueryMode query_of(const RunOptions& options) {
-  // Methods that test only an object against itself draw one step for each triangle. Flags would
-  // have to wait for every step.
+  // Methods that test objects only against themselves draw one step for each triangle. With flags,
+  // the program would have to wait for the device after every step.
   const bool steps = tests_self_alone(options.method);
   const bool flags = options.depth_format == DepthFormat::float32 && !steps;
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);

@@ -45,9 +45,9 @@ struct RunOptions {
   int rounds = 0;                    // largest number of rounds; 0: until a round changes nothing,
                                      // or for far, until a round culls little
   ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
-  bool objects_alone = false;        // culls only objects, not triangles; not s-cullide
-  bool conservative = false;         // draws each pixel that a triangle touches; not far
-  BroadPhase broad_phase = BroadPhase::objects;  // not s-cullide
+  bool objects_alone = false;        // culls only whole objects; not for s-cullide
+  bool conservative = false;         // draws each pixel that a triangle touches; not for far
+  BroadPhase broad_phase = BroadPhase::objects;  // not for s-cullide
   std::string views = {};                        // "": x,y,z
   std::string device = {};  // value of --device (kDeviceHelp); "": GL if a hardware device answers,
                             // else the cores of the CPU
@@ -55,11 +55,11 @@ struct RunOptions {
   bool verify = true;
   bool neighbours = true;  // false: triangles of one object that share a vertex index are not
                            // tested
-  std::vector<ObjectPair> ignored = {};  // pairs of objects that are not tested; by in_order()
+  std::vector<ObjectPair> ignored = {};  // pairs of objects not to test; sorted by in_order()
   std::uint64_t limit = 0;  // finds only this many colliding pairs, neighbours included; 0: all
   ContactDetail contacts = ContactDetail::none;
   bool full = false;          // run all stages, even stages that the scene does not need
-  bool no_shortcuts = false;  // far draws as much as without a guarantee, to compare radii
+  bool no_shortcuts = false;  // far draws as if it had no guarantee, to compare radii
   std::optional<std::uint64_t> seed = {};  // the seed of a random scene; empty: no random scene
   // The value of a new option goes here.
 };
@@ -70,30 +70,29 @@ using OptionValue = std::variant<std::monostate, bool, int, double, std::string>
 /// An option that a user gives by name. The table of options determines the command line, its help
 /// and its completion, the keywords in Python, the options in records, and errors.
 struct Option {
-  const char* name;  // of the parameter, as in depth_format (--depth-format on a command line)
-  const char* type;  // the value as the help shows it, as in "fragment|fixed"; "" for a flag
+  const char* name;  // name of the parameter, such as depth_format (--depth-format in commands)
+  const char* type;  // the value as the help shows it: "fragment|fixed"; "" for a flag
   std::string help;  // text of the help, in lines
   bool (*serves)(const Traits&);  // true for methods that have the option
   /// Reads a value ("" for a flag). Returns false if the text is no value of the option. May throw
-  /// Error with a better message. Precondition: options.method is set. Null if the option is about
-  /// the scene: then the caller reads it.
+  /// Error with a better message. Precondition: options.method is set. Null for an option about the
+  /// scene, which the caller reads.
   bool (*take)(const std::string& text, RunOptions& options) = nullptr;
   const char* kind = "";    // the error for a bad value says that it "is no <kind>"
   const char* remedy = "";  // what the error says to give instead
-  /// Returns the value as on the command line if the value changes what methods do, else nothing.
-  /// Methods without the option refuse such a value. If null, they refuse every value that the user
-  /// gave.
+  /// Returns the value as on the command line if it changes what methods do, else nothing. May be
+  /// null. Methods without the option refuse such a value, and any value that the user gave.
   std::optional<std::string> (*unusual)(const RunOptions&) = nullptr;
-  /// Says why a method does not have the option. If null, the error says that the option "has no
+  /// Returns why a method does not have the option. If null, the error is that the option "has no
   /// meaning" for the method.
   const char* (*why_not)(const Traits&) = nullptr;
-  /// Copies the value. Null unless the option is of a form (docs/methods.md, "Forms of CULLIDE").
+  /// Copies the value. Null unless the option selects a form (docs/methods.md, "Forms of CULLIDE").
   void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
   /// Returns the value for records. Null if the record has the value elsewhere.
   OptionValue (*value)(const RunOptions&) = nullptr;
-  /// True if the option says how to draw. Then it is null in the record of a run that drew nothing.
+  /// True if the option is about drawing. Its value is null in the record of a run without drawing.
   bool of_drawing = false;
-  std::vector<std::string> words = {};  // values that a shell completes, besides those in `type`
+  std::vector<std::string> words = {};  // completed by a shell, besides those in `type`
 };
 
 /// Returns all options, in the order of the help.
@@ -101,7 +100,7 @@ std::span<const Option> run_options();
 /// Returns the option with this name. Precondition: the option exists.
 const Option& run_option(std::string_view name);
 /// Returns the name as a command line has it: "--depth-format" for depth_format, "farcull doctor"
-/// for doctor. Returns nothing for an unknown name. For spell_parameters().
+/// for doctor. Returns nothing for an unknown name. An argument of spell_parameters().
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".
@@ -131,27 +130,28 @@ inline constexpr const char* kDeviceHelp =
     "lists; default GL where hardware answers and keeps the\n"
     "assumptions, else native";
 
-// Each of these functions returns the value that was given, else the default.
+// Each of the next four functions returns the given value of an option, else the default.
 int resolution_of(const RunOptions& options);
 std::string views_of(const RunOptions& options);
 DepthMode depth_of(const RunOptions& options);
 QueryMode query_of(const RunOptions& options);
 /// True if the method guarantees to miss no pair: boxes, i-collide, and far with fragment depth and
-/// at least the budget radius. far needs a device that keeps the assumptions (Promise).
+/// at least the budget radius. The guarantee of far also needs a device that keeps the assumptions
+/// (Promise).
 bool guaranteed(const RunOptions& options);
-/// Returns the options of a form (docs/methods.md, "Forms of CULLIDE") that have unusual values, as
-/// in "--rounds 1 --clear all".
+/// Returns the options that select a form (docs/methods.md, "Forms of CULLIDE") and are not at
+/// their defaults, as in "--rounds 1 --clear all".
 std::string form_text(const RunOptions& options);
-/// Returns the options, and resets options of a form that the method does not have. So the same
+/// Returns a copy in which each form option that the method lacks has its default. So the same
 /// options can be used for several methods.
 RunOptions with_fitting_form(RunOptions options);
 /// Returns "published", "budget", or the factor on the budget radius.
 std::string radius_text(const RadiusRule& radius);
-/// Returns the method in words, such as "cullide at 512 px, --rounds 1". not_drawn: if not empty,
-/// it says why nothing was drawn, and stands in place of the resolution.
+/// Returns the method in words, such as "cullide at 512 px, --rounds 1". not_drawn: why nothing was
+/// drawn; unless empty, this text replaces the resolution.
 std::string describe(const RunOptions& options, const std::string& not_drawn = "");
 
-/// Says why the method was chosen: "--method" or "no --method: boxes misses nothing, ...".
+/// Returns why the method was chosen: "--method" or "no --method: boxes misses nothing, ...".
 std::string method_reason(const RunOptions& options);
 
 }  // namespace farcull

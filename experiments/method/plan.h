@@ -1,5 +1,5 @@
-// The plan of a run has all decisions that need no pixels. `farcull plan` prints the plan. find()
-// executes the plan.
+// The plan of a run holds all decisions that do not depend on drawn pixels. `farcull plan` prints
+// the plan. find() executes the plan.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ namespace farcull {
 /// The plan of a method that draws.
 struct DrawPlan {
   Regions regions;
-  std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
-  CullSettings settings;            // without the fattener
+  std::vector<Fattener> fatteners;  // offsets in the order of use; empty: nothing is drawn
+  CullSettings settings;            // settings without a fattener
   bool self = false;                // the method tests only triangles of one object (S-CULLIDE)
   Patches patches;                  // patches of objects that far tests against themselves
-  /// All pairs of triangles whose boxes overlap. If a pair is drawn, patches.owner is set. If
-  /// empty, only boxes of objects were compared.
+  /// All pairs of triangles whose boxes overlap. If there are pairs to draw, patches.owner is set.
+  /// Null if only boxes of objects were compared.
   std::optional<PairsToDraw> pairs = {};
 };
 

@@ -30,7 +30,7 @@ struct UsedDevice {
   std::optional<GlInfo> gl;  // the GL device; empty if no GL device was used
   bool cpu = false;          // true: the cores of the CPU were used
   std::string lanes = {};    // the CPU's instruction set; empty for a GL device
-  int depth_bits = 0;        // of the canvas
+  int depth_bits = 0;        // bits of a depth value
   std::string note;          // why this device was used; empty if no device was used
   bool relies = false;       // the guarantee depends on the GL device
 };
@@ -45,7 +45,7 @@ struct Candidates {
   std::vector<TrianglePair> pairs;  // sorted; empty if streamed
   bool streamed = false;            // true: each pair was decided when it was found, and not listed
   std::uint64_t count = 0;          // number of candidate pairs
-  std::uint64_t ignored = 0;        // number of removed candidates of ignored objects
+  std::uint64_t ignored = 0;        // candidates removed because their objects are ignored
   /// The triangles of the potentially colliding set, ascending. For `boxes`, run() sets this from
   /// the pairs. Empty for a method that culls nothing.
   std::vector<std::uint32_t> triangles;
@@ -56,7 +56,7 @@ struct Candidates {
   std::variant<std::monostate, std::vector<ViewReport>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // CullResult::bits of a drawing method, one per triangle
   UsedDevice device;
-  CanvasWork asked;  // work of the GL device in drawing; all 0 for other methods
+  CanvasWork asked;  // work of the GL device while drawing; 0 if it drew nothing
   std::vector<Stage> trace;
   double setup_ms = 0;    // time for the context and shaders
   double ms = 0;          // time of finding, without setup_ms and decided_ms
@@ -81,7 +81,7 @@ struct RunTimes {
   double cull = 0;      // planning and finding the candidates
   double exact = 0;     // exact predicates on the candidates
   double total = 0;     // setup + cull + exact
-  double contacts = 0;  // kinds of contact
+  double contacts = 0;  // finding the kinds of contact
   FARCULL_FIELDS(setup, cull, exact, total, contacts)
 };
 
@@ -94,8 +94,8 @@ struct Promise {
 };
 
 /// How many colliding pairs FAR loses with a smaller radius, in the same scene, views and pixels.
-/// at_risk: with 0.9 of the budget radius. at_risk_bare: with radius 0. If the two numbers are 0,
-/// the scene does not show that the radius is needed.
+/// at_risk: with 0.9 of the budget radius. at_risk_bare: with radius 0. If both numbers are 0, the
+/// scene does not show that the radius is needed.
 struct PairsAtRisk {
   std::uint64_t at_risk = 0, at_risk_bare = 0;
 };
@@ -115,7 +115,7 @@ struct Record {
   /// The contacts of collisions.pairs and of collisions.neighbour_pairs. RunOptions::contacts says
   /// how much detail they have.
   std::vector<ContactShape> contacts, neighbour_contacts;
-  std::optional<Accounting> verification;  // with at most kExamples examples
+  std::optional<Accounting> verification;  // has at most kExamples examples
   /// How many missed pairs touch, and how many penetrate. Set if there is a verification and the
   /// clearance is 0.
   std::optional<ContactCounts> missed;
@@ -124,6 +124,6 @@ struct Record {
   FloatingPoint callers, used;  // floating-point environments of the caller and of this run
 };
 
-constexpr std::size_t kExamples = 10;  // missed pairs that a record names
+constexpr std::size_t kExamples = 10;  // largest number of missed pairs that a record names
 
 }  // namespace farcull

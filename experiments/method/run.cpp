@@ -1,4 +1,4 @@
-// Each stage fills its part of the record; run(), at the end of this file, calls them in order.
+// One function for each stage fills a part of the record. run() calls these functions in order.
 #include "experiments/method/run.h"
 
 #include <algorithm>
@@ -77,14 +77,14 @@ class StreamingDecider {
   std::vector<std::uint8_t> kept_;  // 1 for a triangle of a candidate; empty if `marks` is false
   std::mutex mutex_;                // guards all members below
   GatheredPairs pairs_, neighbour_pairs_;
-  Collisions counts_;  // without pairs until the end
+  Collisions counts_;  // without pairs until finish()
   std::uint64_t ignored_ = 0;
   std::set<std::thread::id> threads_;
   double ms_ = 0;  // time of deciding, summed over the threads
 };
 
-// True if a tree of all boxes would find more than kMostListed candidates. A run with a limit does
-// not list so many candidates.
+// True if a tree of all boxes finds more than kMostListed candidates. A run with a limit then calls
+// search_first() instead of listing all candidates.
 bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& question,
                 unsigned threads) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
@@ -108,8 +108,8 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
   return listed > kMostListed;
 }
 
-// Searches in the order of pairs until options.limit pairs collide. The search ends after
-// kMostSearched + 16 * limit candidates, since it may be that hardly any candidate collides.
+// Tests candidates in the order of pairs until options.limit pairs collide. Ends after about
+// kMostSearched + 16 * limit candidates, since hardly any candidate may collide.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;
@@ -145,7 +145,7 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
                           .unit = Unit::pairs});
 }
 
-// Plans and finds. Frees the memory of the plan before the next stages.
+// Plans the run and finds candidates. The plan's memory is freed before the next stages.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
                 const ExactQuestion& question, const RunUse& use, Record& record) {
   const Stopwatch comparing;
@@ -172,7 +172,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   record.ms.cull = compared_ms + planned.ms + record.found.ms;
 }
 
-// Decides the candidates. If they were decided when they were found, takes these answers.
+// Decides the candidates. If they were decided as they were found, uses these answers.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   const ExactQuestion& question, bool keeps_frames, Record& record) {
   if (record.limited) return;  // search_first() has decided
@@ -240,8 +240,8 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
-// Returns the guarantee of the method on the device that it used. After an exception the session
-// has forgotten its device.
+// Returns the guarantee of the method on the device that was used. If this throws, the session
+// forgets its device.
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
   Promise promise;
   promise.holds = guaranteed(options);
@@ -332,8 +332,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   decide_stage(scene, session, progress, question, !use.decided, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
-  // A method that culls nothing has decided all pairs, without the limit. For other methods
-  // decide() has kept the limit.
+  // A method that culls nothing decides all pairs, so the limit is applied here. For other methods
+  // decide() has applied the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // code of a driver may have changed this thread's settings

@@ -17,14 +17,14 @@ namespace farcull {
 
 /// Runs the method: finds the candidates of the planned scene, without pairs of ignored objects.
 /// question: if not null, each candidate from a tree of boxes is decided when it is found, and not
-/// listed, so that memory does not grow. marks: if false, Candidates::triangles lacks the triangles
-/// of candidates that are not listed. Throws Error for any fault of the device. After an exception
+/// listed, so that memory does not grow. marks: if false, the triangles of these candidates are not
+/// recorded in Candidates::triangles. Throws Error for any fault of the device. After an exception
 /// the session has forgotten its device, and can be used again.
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {}, const ExactQuestion* question = nullptr,
                 bool marks = true);
 
-/// How a caller uses run(). The user's options are in RunOptions.
+/// Arguments of run() that the calling code sets. The user's options are in RunOptions.
 struct RunUse {
   /// Removes candidates that other runs decide (tiles). May be empty. Called after the accounting,
   /// which needs all candidates, and before the exact tests.
@@ -35,8 +35,8 @@ struct RunUse {
   /// The changes of the scene since the last run of the session. If null, the scenes are compared.
   /// Used only if the session remembers frames.
   const FrameChange* change = nullptr;
-  /// Only for `boxes`: the overlapping blocks that decide_by_motions() found; may be null. With
-  /// these, only vertices of these blocks are read, and the session uses no memory of frames.
+  /// Only for `boxes`: the overlapping blocks that decide_by_motions() found; may be null. If set,
+  /// only vertices of these blocks are read, and the session's memory of frames is not used.
   const BlockDecision* decided = nullptr;
   bool decide_neighbours = true;  // false: neighbours are counted, but not decided
 };
@@ -60,12 +60,12 @@ FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& cand
 /// order.
 std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
-/// Returns the pairs that the exact tests got, sorted. If these pairs were not listed
-/// (Candidates::streamed), returns only the colliding pairs, neighbours included. Then all other
-/// pairs have to be accounted for.
+/// Returns the candidates of the exact tests, sorted. If the candidates were not listed
+/// (Candidates::streamed), returns only the colliding pairs, neighbours included. The accounting
+/// must then cover all other pairs.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
-/// True if a method with a guarantee missed a pair. strict: true if any method missed a pair
+/// True if a method with a guarantee missed a pair. strict: a method without a guarantee counts too
 /// (`farcull verify`). Ignores the verdict about the device.
 bool broken(const Record& record, bool strict);
 
@@ -78,7 +78,7 @@ bool broken(const Record& record, bool strict);
 void require_asked(std::uint64_t objects, bool self, std::uint64_t ignored,
                    const std::string& where, const std::string& otherwise);
 
-/// The same for a scene. The pairs in scene.ignored are ignored, too.
+/// Does the same check for a scene. The pairs in scene.ignored also count as ignored.
 void require_asked(const Scene& scene, std::vector<ObjectPair> ignored, const std::string& where,
                    const std::string& otherwise);
 

@@ -72,7 +72,7 @@ int Session::max_resolution() {
 void Session::forget_device() {
   canvases_.clear();
   context_.reset();
-  verdict_.reset();  // another device may answer next time
+  verdict_.reset();  // the next device may be another one
   canvas_device_.reset();
   frame_memory_ = {};
   if (frames_) remember_frames();

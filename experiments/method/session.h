@@ -22,40 +22,39 @@ namespace farcull {
 /// Returns a function that clears the line of progress and writes a line on standard error.
 Say say_on_stderr();
 
-/// Which canvas draws, and why.
+/// The kind of canvas that draws, and why it was chosen.
 struct CanvasDevice {
   bool native = false;  // true: the cores of the CPU (core/native/canvas.h); false: a GL device
   std::string reason;
 };
 
-/// Makes each part when a run first needs it, and keeps it for later runs. Two threads must not use
-/// a Session at once.
+/// Makes each device, context and canvas when a run first needs it, and keeps it for later runs.
+/// Two threads must not use a Session at once.
 class Session {
  public:
-  /// device: as RunOptions::device. If it is empty, GL is used if a hardware device answers and
-  /// keeps the assumptions, else the cores of the CPU. threads: CPU threads; 0: as many as there
-  /// are cores. say: as in device_verdict(); may be empty.
+  /// device: as RunOptions::device. If it is empty, GL is used if there is a hardware device that
+  /// keeps the assumptions (device_verdict.h), else the cores of the CPU. threads: CPU threads; 0:
+  /// as many as there are cores. say: as in device_verdict(); may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
-  /// Returns the number of threads. If it was given as 0, returns the number of cores.
+  /// Returns the given number of threads, or the number of cores if 0 was given.
   unsigned cpu_threads() const {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
   const GlContext& context();
-  /// Says whether the device of context() keeps the assumptions. Probes the device if no file keeps
-  /// a verdict. Does not restore the GL state.
+  /// Returns whether the device of context() keeps the assumptions. Probes the device if no verdict
+  /// is stored in a file. Does not restore the GL state.
   const DeviceVerdict& verdict();
-  /// Returns the device on which canvases draw.
   const CanvasDevice& canvas_device();
-  /// Returns the canvas for this fattener and these options, which is made once. Only GL has query
-  /// modes.
+  /// Returns the canvas for this fattener and these options. The first call makes the canvas. Only
+  /// GL has query modes.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   /// Returns the largest resolution of canvases in px.
   int max_resolution();
-  /// From now on, runs are consecutive frames of a scene. Boxes and the exact tests then reuse
-  /// results about triangles that did not move. Answers stay the same.
+  /// Declares that the following runs are consecutive frames of one scene. The method `boxes` and
+  /// the exact tests then reuse results about triangles that did not move. Answers stay the same.
   void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
   /// Returns null if remember_frames() was not called.
   FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }

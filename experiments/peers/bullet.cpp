@@ -1,5 +1,5 @@
-// Bullet's tree of boxes (btGImpactBvh of GImpact) in double. The boxes are made here. Pairs of
-// leaves are candidates. Bullet's test of two triangles is not used, since it rounds.
+// Bullet's tree of boxes (btGImpactBvh of GImpact) in double. This file computes the boxes. Pairs
+// of leaves that meet are candidates. Bullet's test of two triangles is not used, since it rounds.
 //
 // Bullet's find_collision() is not called, since it stores all pairs and has one thread. It also
 // compares rounded centres and extents with a tolerance, so it can lose small boxes that touch far
@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::is_same_v<btScalar, double>, "boxes in float would have to be rounded outward");
 
-/// Gives Bullet the boxes while it builds a tree.
+/// Gives Bullet the boxes while Bullet builds a tree.
 class Boxes : public btPrimitiveManagerBase {
  public:
   explicit Boxes(std::span<const Box> boxes) : boxes_(boxes) {}

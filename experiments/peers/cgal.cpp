@@ -41,7 +41,7 @@ struct PeerBox {
   using NT = double;
   using ID = std::uint32_t;
   Box box;
-  std::uint32_t index;  // of a triangle or an object
+  std::uint32_t index;  // index of a triangle or an object
 
   static int dimension() { return 3; }
   double min_coord(int axis) const { return box.lo[axis]; }
@@ -57,7 +57,7 @@ Handles handles(const std::vector<PeerBox>& boxes) {
   return all;
 }
 
-/// Joins all boxes at once, as the manual calls box_intersection_d.
+/// Joins all boxes in one call of box_intersection_d, as in CGAL's manual.
 template <std::ptrdiff_t cutoff>
 BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
   PeerCandidates candidates(raw, threads, false);
@@ -97,7 +97,7 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
 /// Joins boxes of triangles for each pair of objects, and for each `self` object with itself. Only
 /// boxes that meet the common part of the objects' boxes are joined.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
-  // With one pair of objects, only the decisions can be divided over threads.
+  // With one pair of objects, only the exact decisions can be divided over threads.
   const bool parallel = threads > 1 && raw.objects.size() > 2;
   PeerCandidates candidates(raw, threads, parallel);
   const PeerScene scene(raw);
@@ -156,9 +156,9 @@ struct Walk {
   }
 };
 
-/// Searches a tree for each triangle. If only two objects are tested against each other
-/// (PeerScene::two_sides), the tree has the smaller object, and the triangles of the larger object
-/// are searched. Else the tree has all triangles, and each triangle is searched.
+/// Searches a tree for the box of each triangle. If only two objects are tested against each other
+/// (PeerScene::two_sides), the tree has the smaller object's triangles, and the larger object's
+/// triangles are searched for. Else the tree has all triangles, and each is searched for.
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
@@ -200,7 +200,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
 
 // Distances between the triangles of one object and the AABB_tree of another object. CGAL's
 // distance functions of a tree take only a point. So the tree's traversal is called here with a
-// triangle and the least distance so far. It leaves out nodes whose boxes are farther away.
+// triangle and the least distance so far. The traversal skips nodes whose boxes are farther away.
 
 double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
   double sum = 0;

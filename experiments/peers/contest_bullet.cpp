@@ -1,11 +1,11 @@
-// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(). It uses Bullet's trees of boxes
-// and Bullet's test of two triangles. This file is compiled twice, for Bullet in float and for
-// Bullet in double.
+// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(). This function uses Bullet's
+// trees of boxes and Bullet's test of two triangles. This file is compiled twice, for Bullet in
+// float and for Bullet in double.
 //
 // Bullet reports a list of contact points, each with two triangles. Bullet adds a margin to every
 // shape, so it reports triangles that are apart. There are two contestants: with the default
 // margin, as Bullet's manual advises, and with a margin of 0. The manual advises against 0, but
-// only with 0 can Bullet distinguish triangles that meet from triangles that are apart.
+// with a larger margin Bullet cannot distinguish triangles that meet from triangles that are apart.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
@@ -73,8 +73,8 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
 class World {
  public:
   World() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
-    // registerAlgorithm() is enough for the steps of a simulation. contactPairTest() needs the
-    // second call.
+    // registerAlgorithm() is enough for a simulation. contactPairTest() also needs
+    // registerClosestPointsCreateFunc().
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE,
                                                 &create_);
@@ -129,7 +129,7 @@ Contestant contestant(const std::string& name, double margin) {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  // By the manual, a shape has a margin of 0.04. Two shapes have 0.08 together.
+  // By Bullet's manual, a shape has a margin of 0.04, so two shapes have 0.08 together.
   return contest(argc, argv,
                  {contestant("bullet-gimpact-", 0), contestant("bullet-gimpact-margin-", 0.08)});
 }

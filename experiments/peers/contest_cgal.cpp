@@ -97,7 +97,7 @@ bool mesh_pair(const SuitePair& pair) {
   return PMP::do_intersect(meshes[0], meshes[1]);
 }
 
-/// For each pair of objects, searches a tree of the second for the triangles of the first.
+/// For each pair of objects, searches a tree of the second object for the first one's triangles.
 std::vector<TrianglePair> tree_scene(const Scene& scene) {
   using Triangles = std::vector<Exact::Triangle_3>;
   using Primitive = CGAL::AABB_triangle_primitive<Exact, Triangles::const_iterator>;

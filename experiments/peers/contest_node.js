@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // Libraries of npm as contestants (docs/ask.md has the protocol): three-mesh-bvh, rapier, cannon-es,
-// manifold and Jolt. A contestant is a function. It imports the library, and returns a card and the
-// functions that answer.
+// manifold and Jolt. A contestant is a function that imports the library, and returns a card and the
+// functions that answer questions.
 'use strict';
 
 const fs = require('fs');
@@ -22,8 +22,8 @@ function readObj(file) {
 }
 
 // ---- three-mesh-bvh ----
-// It computes in double. By default, a geometry of three.js has vertices in float. Here it gets a
-// Float64Array instead.
+// three-mesh-bvh computes in double. By default, a geometry of three.js has vertices in float. Here the
+// geometry gets a Float64Array instead.
 
 async function threeMeshBvh() {
   const three = await import('three'), bvh = await import('three-mesh-bvh');
@@ -37,8 +37,8 @@ async function threeMeshBvh() {
     return out;
   }
 
-  // The tree sorts the triangles in its own order. With `indirect`, it does not change the geometry,
-  // and tells the number of the triangle at each place of this order.
+  // The tree sorts the triangles in its own order. With `indirect`, the geometry is not changed, and
+  // resolveTriangleIndex() returns the number of a triangle in the file.
   function tree(file) {
     const { vertices, triangles } = readObj(file);
     const geometry = new three.BufferGeometry();
@@ -76,7 +76,7 @@ async function threeMeshBvh() {
 }
 
 // ---- rapier ----
-// It computes in float. A query of shapes needs no world.
+// rapier computes in float. A query of shapes needs no world.
 
 async function rapier() {
   const { default: RAPIER } = await import('@dimforge/rapier3d-compat');
@@ -102,8 +102,8 @@ async function rapier() {
 }
 
 // ---- cannon-es ----
-// Its narrow phase of convex bodies is used. Each triangle is a body of two opposite faces. The
-// library's triangle meshes collide only with spheres and planes.
+// The narrow phase of cannon-es for convex bodies is used. Each triangle is a body of two opposite
+// faces. The library's triangle meshes collide only with spheres and planes.
 
 async function cannon() {
   const cannon = await import('cannon-es');
@@ -117,7 +117,7 @@ async function cannon() {
 }
 
 // ---- manifold ----
-// It tests whether the intersection of two solids is empty. status() refuses a mesh that is no manifold.
+// manifold tests whether two solids intersect. status() refuses a mesh that is no manifold.
 
 async function manifold() {
   const { default: Module } = await import('manifold-3d');
@@ -199,7 +199,7 @@ async function main() {
     process.stderr.write(`usage: NAME, one of ${Object.keys(kContestants).join(' ')}\n`);
     process.exit(2);
   }
-  console.log = console.warn = () => {};  // what a library prints is no answer
+  console.log = console.warn = () => {};  // the library's own output is no answer
   let contestant;
   try {
     contestant = await kContestants[name]();

@@ -1,6 +1,6 @@
 // farcull's own methods as contestants. The environment variable FARCULL_CONTEST_DEVICE names the
 // device; without it the cores of the CPU are used. Methods run as by `farcull run`. Exception:
-// Collider::find() of the library runs `boxes`.
+// `boxes` runs by Collider::find() of the library.
 #include <algorithm>
 #include <map>
 
@@ -20,9 +20,9 @@ std::string device() {
   return named != nullptr && *named != '\0' ? named : "native";
 }
 
-/// Returns the pairs of triangles of one object that share a vertex position, but no vertex index.
-/// Sorted. For farcull such triangles are neighbours, which it reports only if they share more than
-/// that position. A suite compares indices, so for a suite they are two triangles that touch.
+/// Returns, sorted, the pairs of triangles of one object that share a vertex position, but no
+/// vertex index. For farcull such triangles are neighbours, reported only if they share more than
+/// the position. A suite compares indices, so for a suite they are triangles that touch.
 std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> at;
   for (const Object& object : scene.objects) {
@@ -56,8 +56,8 @@ std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
   static Session session(device(), 1, {});
   if (draws(options.method)) options.device = device();
   options.verify = false;
-  // Probing a software renderer takes longer than the time limit of an answer, except for the first
-  // answer. So two triangles are drawn here, before the first answer.
+  // The first drawing probes a software renderer, which takes long. Only the first answer of a
+  // process may take long, so two triangles are always drawn with that answer.
   [[maybe_unused]] static const Record probed =
       run(scene_of({.shared = {},
                     .a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
@@ -126,7 +126,7 @@ Contestant far_at(const std::string& radius) {
   return out;
 }
 
-/// True if the insides of two objects overlap, as `farcull clash` decides it.
+/// True if the insides of two objects overlap, as decided by `farcull clash`.
 bool clash_of(const Scene& scene) {
   const ClashRecord record = clashes(scene, {.threads = 1});
   if (record.rows.empty()) return false;
@@ -159,7 +159,7 @@ Contestant exact() {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  ::setenv("LP_NUM_THREADS", "0", 0);  // as farcull does (docs/drivers.md)
+  ::setenv("LP_NUM_THREADS", "0", 0);  // the program farcull sets this, too (docs/drivers.md)
   const char* const reliable = "misses no pair; exact tests decide what is left";
   const Contestant boxes = contestant({.name = "boxes",
                                        .neighbours = true,

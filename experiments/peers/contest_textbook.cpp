@@ -20,7 +20,7 @@ using Point = std::array<T, 3>;
 template <class T>
 using Corners = std::array<Point<T>, 3>;
 template <class T>
-using Flat = std::array<std::array<T, 2>, 3>;  // a triangle in a plane
+using Flat = std::array<std::array<T, 2>, 3>;  // a triangle in two dimensions
 
 template <class T>
 Point<T> operator-(const Point<T>& a, const Point<T>& b) {
@@ -70,7 +70,7 @@ bool separated_by_edge(const Flat<T>& a, const Flat<T>& b) {
   return false;
 }
 
-/// True if two triangles in a plane with the normal n overlap. Drops the longest coordinate of n.
+/// True if two triangles overlap in a plane with the normal n. Drops the axis of n's largest entry.
 template <class T>
 bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& b) {
   const int drop = longest_axis(n);
@@ -83,7 +83,7 @@ bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& 
   return !separated_by_edge(first, second) && !separated_by_edge(second, first);
 }
 
-/// Returns signed distances of points from the plane through `of` with the normal n, times |n|.
+/// Returns signed distances of points from the plane of triangle `of` with normal n, times |n|.
 template <class T>
 std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corners<T>& points) {
   const T d = -dot(n, of[0]);
@@ -138,23 +138,23 @@ bool moeller(const SuitePair& pair, T epsilon) {
   const std::array<T, 3> da = snapped(distances(n2, b, a));
   if (one_strict_sign(da)) return false;
   if (all_zero(da) || all_zero(db)) return coplanar_overlap(n1, a, b);
-  // Projects the common line of the two planes on the axis along which the line is longest.
+  // Projects the common line of the two planes on the axis that is closest to its direction.
   const int axis = longest_axis(cross(n1, n2));
   const std::array<T, 2> first = interval<T>({a[0][axis], a[1][axis], a[2][axis]}, da);
   const std::array<T, 2> second = interval<T>({b[0][axis], b[1][axis], b[2][axis]}, db);
   return !(first[1] < second[0] || second[1] < first[0]);
 }
 
-/// Returns a determinant. Its sign is the side of the plane through a, b and c on which d lies.
+/// Returns a determinant. Its sign tells on which side of the plane (a, b, c) the point d lies.
 template <class T>
 T side(const Point<T>& a, const Point<T>& b, const Point<T>& c, const Point<T>& d) {
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// The lone corner of a triangle, which is alone on its side of the other plane. negative: true if
-/// this side is the negative side. Special case: one corner is on the plane, and the two other
-/// corners are on one side. Then the corner on the plane is the lone corner, and `negative` is true
-/// if the two other corners are on the positive side.
+/// The corner of a triangle that is alone on its side of the other triangle's plane. negative: true
+/// if this side is the negative side. Special case: one corner is on the plane, and the two other
+/// corners are on one side. Then `corner` is the corner on the plane, and `negative` is true if the
+/// two other corners are on the positive side.
 struct Alone {
   int corner = 0;
   bool negative = false;

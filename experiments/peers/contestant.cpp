@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
-/// The fields of a line, which tabs separate: its number, the question, and the data.
+/// The fields of a line, separated by tabs: its number, the question, and the data.
 using Fields = std::vector<std::string>;
 
 struct NoQuestion : std::runtime_error {
@@ -75,7 +75,7 @@ Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool 
 void write_answer(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
-    if (wrote <= 0) std::_Exit(kWrongCall);  // nobody reads the output
+    if (wrote <= 0) std::_Exit(kWrongCall);  // the output was closed
     done += static_cast<std::size_t>(wrote);
   }
 }
@@ -142,7 +142,7 @@ bool has(const Contestant& contestant) {
   return static_cast<bool>(contestant.*member);
 }
 
-/// A kind of question, whether a contestant answers it, and its answer.
+/// A kind of question: its word, whether a contestant answers it, and the answer.
 struct Question {
   const char* word;
   bool (*known)(const Contestant&);

@@ -1,6 +1,6 @@
 // A contestant is a library that answers questions in a program of its own. The program reads
 // questions as text and calls the library as the library's documentation says. docs/ask.md has the
-// protocol. This file has the side that answers. `PROGRAM NAME` runs the contestant NAME.
+// protocol. This file is for such programs. `PROGRAM NAME` runs the contestant NAME.
 //
 // farcull does not call the libraries itself, for three reasons. A library may crash, hang or take
 // all memory. Some libraries cannot be linked together: Bullet in float and Bullet in double have
@@ -40,8 +40,8 @@ struct ContestantCard {
 /// triangles.
 ContestantCard crossing_card(const std::string& name, const std::string& library);
 
-/// Thrown by a contestant if its library gives an error instead of an answer, or if the library's
-/// documentation says that it is not made for the question.
+/// Thrown by a contestant if its library gives an error instead of an answer, or if the library is
+/// not made for the question according to its documentation.
 struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -54,7 +54,7 @@ struct ContestDistance {
 
 struct Contestant {
   ContestantCard card;
-  // A function that is not null answers a kind of question.
+  // Each function answers one kind of question; null: the library does not answer this kind.
   std::function<bool(const SuitePair&)> pair = {};
   /// Returns the pairs of triangles that the library calls colliding, in any order. In a scene,
   /// either all objects are tested against themselves, or no object is. A triangle with itself is
@@ -69,8 +69,8 @@ struct Contestant {
 };
 
 /// The main() of a contestants' program, with the protocol of docs/ask.md. An exception of a
-/// library becomes a refusal. Exception: std::bad_alloc ends the program. Returns the exit status.
-/// 0: no error. 2: a wrong call, or a line that is no question. 3: memory ran out.
+/// library becomes a refusal, but std::bad_alloc ends the program. Returns the exit status. 0: no
+/// error. 2: a wrong call, or a line that is not a question. 3: memory ran out.
 int contest(int argc, char** argv, const std::vector<Contestant>& contestants);
 
 /// Calls `ask` for every pair of objects. For an object that is tested against itself, calls `ask`
@@ -78,8 +78,8 @@ int contest(int argc, char** argv, const std::vector<Contestant>& contestants);
 void for_each_object_pair(const Scene& scene,
                           const std::function<void(const Object& a, const Object& b)>& ask);
 
-/// Removes pairs of a triangle with itself, and pairs of an object that is not tested against
-/// itself. For libraries that search all objects as one mesh.
+/// Removes pairs of a triangle with itself, and pairs inside an object that is not tested against
+/// itself. Used with libraries that search all objects as one mesh.
 void leave_out_untested(const Scene& scene, std::vector<TrianglePair>& pairs);
 
 /// Returns a scene with the two triangles as two objects.

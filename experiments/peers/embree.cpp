@@ -1,5 +1,5 @@
-// Embree's rtcCollide as a broad phase. It searches hierarchies of user geometries. Their boxes are
-// in float, and are rounded outward.
+// Embree's rtcCollide as a broad phase. This function searches hierarchies of user geometries. The
+// boxes of the geometries are in float, and are rounded outward.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ void require_no_error(RTCDevice device) {
   throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
 }
 
-/// Says why Embree cannot take the scene. Empty if it can. Embree silently leaves out geometry with
-/// a coordinate of 1.844e18 or more.
+/// Returns why Embree cannot take the scene; empty if Embree can. Embree silently leaves out
+/// geometry with a coordinate of 1.844e18 or more.
 std::string refuses_large(const Scene& scene) {
   for (const Vec3& p : scene.vertices) {
     if (p.cwiseAbs().maxCoeff() > 1e18) return "Embree leaves out coordinates beyond 1e18";

@@ -1,8 +1,8 @@
 // FCL, in four ways.
-// - broad: its hierarchies, followed by exact decisions.
-// - narrow: as its users run it, with its own test of two triangles, which rounds.
-// - poses: as narrow, with hierarchies that are kept while objects move.
-// - distances.
+// - broad: FCL's hierarchies, followed by exact decisions.
+// - narrow: FCL as its users run it, with FCL's own test of two triangles, which rounds.
+// - poses: FCL as in narrow, with hierarchies that are kept while objects move.
+// - distances: FCL's distances between objects.
 // The compiled library has FCL's templates only in double. The templates in float are instantiated
 // here.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
@@ -32,7 +32,7 @@ namespace {
 constexpr const char* kLibrary = "FCL " FCL_VERSION;
 
 /// The hierarchy of one object, with the interface for search_trees(). Primitive i is triangle
-/// first + i. Of two nodes the larger one is divided first, as in FCL.
+/// first + i. As in FCL, the larger of two nodes is divided first.
 template <class Volume>
 struct Model {
   std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
@@ -117,7 +117,7 @@ struct Objects {
     return pairs;
   }
 
-  std::vector<std::uint32_t> numbers;  // numbers of the objects
+  std::vector<std::uint32_t> numbers;  // numbers of the objects in the scene
   std::vector<Model<Volume>> models;
   std::vector<std::unique_ptr<Placed>> placed;
 };
@@ -214,7 +214,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   return answer;
 }
 
-/// Builds the hierarchies and the broad phase. Returns a function that keeps them, and moves the
+/// Builds the hierarchies and the broad phase. Returns a function that keeps both, and moves the
 /// objects in each call.
 PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   using All = Objects<fcl::OBBRSS<double>>;
@@ -244,8 +244,8 @@ PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   };
 }
 
-/// Returns the distance of two objects as by fcl::distance(); infinity if it is not below `most`.
-/// Calls an inner function of FCL, for the reason that collide_two() gives.
+/// Returns FCL's distance of two objects; infinity if the distance is not below `most`. Calls an
+/// inner function of FCL, for the same reason as collide_two().
 template <class Scalar>
 Scalar distance_of(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                    Scalar most) {
@@ -331,7 +331,7 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   return answer;
 }
 
-/// Says why FCL cannot take the scene. Empty if it can.
+/// Returns why FCL cannot take the scene; empty if FCL can.
 std::string refuses(const Scene& scene) {
   return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
 }

@@ -5,8 +5,8 @@
 // ODE reports contacts, and each contact has two triangles. Contacts that are within 1e-4 units are
 // merged. If the two contacts have equal depth, ODE calls a callback, and the callback here records
 // the pairs of the two contacts. Else ODE keeps only the deeper contact. ODE reports at most 65,535
-// contacts of two objects, and no contact of an object with itself. Pairs that are lost in these
-// ways count as missed.
+// contacts of two objects, and no contact of an object with itself. All pairs lost in this way
+// count as missed.
 #include <ode/ode.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 namespace farcull {
 namespace {
 
-std::atomic<std::uint64_t> last_id = 0;  // the last PeerCandidates::id_
+std::atomic<std::uint64_t> last_id = 0;  // the last value that was given to a PeerCandidates::id_
 
 struct Known {
   const char* name;

@@ -28,7 +28,7 @@ struct BenchAnswer {
   std::vector<TrianglePair> pairs = {};  // sorted, each once
 };
 
-/// Computes the pairs from the triangles of a scene. Throws Error if it cannot guarantee the pairs.
+/// Computes the pairs of triangles of a scene. Throws Error if the pairs cannot be guaranteed.
 using BenchRun = std::function<BenchAnswer(const Scene&)>;
 
 /// A library that finds all colliding pairs of triangles, except neighbours (verify/exact.h). The
@@ -78,14 +78,14 @@ struct DistancePeer {
 using PoseRun = std::function<std::vector<TrianglePair>(std::span<const RigidMotion> motions)>;
 
 /// A library that keeps models of the objects of a scene while the objects move (farcull bench
-/// --poses). It rounds, as narrow_peers() do. Members without a comment are as in Peer.
+/// --poses). The library rounds, like narrow_peers(). Members without a comment are as in Peer.
 struct PosePeer {
   std::string name, library = {}, missing = {};
   std::function<PoseRun(const Scene&, unsigned threads)> set_up = {};  // makes the models
   std::function<std::string(const Scene&)> refuses = {};
 };
 
-/// Says why a peer cannot take the scene. Empty if it can.
+/// Returns why a peer cannot take the scene; empty if the peer can.
 template <class AnyPeer>
 std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
   return peer.missing.empty() && peer.refuses ? peer.refuses(scene) : peer.missing;
@@ -93,8 +93,8 @@ std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
 
 /// Returns broad phases of libraries. Each is followed by the exact decisions of verify/exact.h,
 /// and runs at its best settings. All work that can be divided runs on the threads of the bench.
-/// Candidates are decided in parts of limited size, to save memory. The list includes peers that
-/// this build does not have. So do the three lists below.
+/// Candidates are decided in parts of limited size, to save memory. This function and the next
+/// three also return peers that this build does not have.
 std::vector<Peer> all_peers();
 
 /// Returns libraries as their users run them, with their own inexact test of two triangles. So
@@ -112,8 +112,8 @@ std::vector<Peer> narrow_peers();
 ///   squared_distance() of two triangles in doubles.
 std::vector<DistancePeer> distance_peers();
 
-/// Returns one peer: fcl-double, as in narrow_peers(), but it keeps its hierarchies and its broad
-/// phase from call to call.
+/// Returns one peer: fcl-double, as in narrow_peers(), but its hierarchies and its broad phase are
+/// kept from call to call.
 std::vector<PosePeer> pose_peers();
 
 /// The peers that the adapter of one library adds to the lists above.
@@ -128,7 +128,7 @@ LibraryPeers bullet_library();
 LibraryPeers ode_library();
 PosePeer fcl_poses();
 
-// For the files that adapt a library.
+// Functions and classes for the files that adapt a library.
 
 /// Returns a peer that needs no setup. Each run calls run(scene, threads).
 Peer plain_peer(const std::string& name, const std::string& library,
@@ -141,15 +141,15 @@ std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 /// Returns `reason` if the scene has degenerate triangles, else "".
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 
-/// What a peer prepares from a scene: the boxes of the triangles, and which pairs of triangles are
-/// tested. The time for this counts as time of the peer.
+/// Data that a peer prepares from a scene: the boxes of the triangles, and which pairs of triangles
+/// are tested. The time for the preparation counts as time of the peer.
 struct PeerScene {
   /// with_boxes: false for a peer that makes its own boxes.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
 
   const Scene& scene;
-  std::vector<Box> boxes;            // per triangle
-  std::vector<std::uint32_t> owner;  // per triangle
+  std::vector<Box> boxes;            // one per triangle
+  std::vector<std::uint32_t> owner;  // one per triangle: the number of its object
   bool two_sides = false;            // exactly two objects have triangles, and no object is `self`
   std::uint32_t second = 0;          // if two_sides, the second object's first triangle; else 0
 
@@ -159,7 +159,7 @@ struct PeerScene {
     return owner[a] != owner[b] ||
            (scene.objects[owner[a]].self && !share_index(scene.triangles[a], scene.triangles[b]));
   }
-  /// True if counts() is true for any pair.
+  /// True if counts() is true for at least one pair.
   bool has_pairs() const;
 };
 

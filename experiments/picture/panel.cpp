@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of diameter 2 sqrt(2) px contains a complete pixel wherever the disc lies. So at least one
-// pixel has the pure colour. Reason: the disc's middle is at most half a diagonal from the middle
-// of a pixel, and the pixel's corners are half a diagonal from the middle of the pixel.
+// A disc of diameter 2 sqrt(2) px contains a complete pixel, wherever its centre lies. So at least
+// one pixel gets the unblended colour. Reason: the disc's centre is at most half a pixel diagonal
+// from a pixel centre, and the corners of this pixel are half a diagonal from the pixel centre.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.
@@ -41,7 +41,7 @@ class Clusters2d {
     }
   };
 
-  // Removes and returns the groups. Cells that touch form one group, even if only corners touch.
+  // Removes and returns the groups. Cells that share an edge or a corner are in the same group.
   std::vector<Group> take_groups() {
     std::vector<Group> out;
     while (!cells_.empty()) {

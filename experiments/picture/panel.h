@@ -13,15 +13,15 @@ namespace farcull {
 /// The arguments of `farcull picture`.
 struct PictureArguments {
   SceneArguments scene;
-  bool self = false;          // tests every object against itself
-  std::optional<long> frame;  // frame of a scene that moves; empty: the scene does not move
+  bool self = false;          // also tests every object against itself
+  std::optional<long> frame;  // frame number of a moving scene; empty: the scene does not move
   // The frames of the motion. If empty: 30 frames, or only `frame` for numbered meshes.
   std::optional<FrameRange> frames;
   std::vector<RunOptions> panels;  // one for each panel; verify and device are ignored
-  std::string view;                // direction of sight, as for parse_view(); "": downward at an
-                                   // angle, at the side that faces +z
+  std::string view;                // direction of sight, for parse_view(); "": obliquely down onto
+                                   // the side that faces +z
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
-  bool zoom = false;               // only the colliding triangles
+  bool zoom = false;               // fits the picture to the colliding triangles alone
   int width = 900, height = 760;   // size of a panel's picture in px, 64 to kMostPicture
 };
 
@@ -34,16 +34,16 @@ std::string command_of(const PictureArguments& arguments);
 /// Reads no scene and opens no device.
 void validate(const PictureArguments& arguments);
 
-/// Returns the view of the picture. The image is upright and not mirrored: right, up and backward
-/// are right-handed. Throws Error naming --up if arguments.up is the direction of sight.
+/// Returns the view of the picture. Its axes right, up and backward are right-handed, so the image
+/// is not mirrored. Throws Error naming --up if arguments.up is the direction of sight.
 View camera(const PictureArguments& arguments);
 
 /// Returns the frames of the motion. Precondition: arguments.frame is not empty.
 FrameRange frames_of(const PictureArguments& arguments);
 
-// Images with text: panels side by side, with titles above and legends below, as PNG. Pango and
-// cairo draw the font DejaVu Sans without hinting. If the system lacks this font, fontconfig
-// chooses another font.
+// The functions below put panels side by side, with titles above and legends below, and write PNG.
+// Pango and cairo draw text in the font DejaVu Sans, without hinting. If the system lacks this
+// font, fontconfig chooses another font.
 
 struct TextStyle {
   double height = 14;  // px of a capital letter
@@ -51,8 +51,8 @@ struct TextStyle {
   Rgba colour = {30, 30, 34, 255};
 };
 
-/// Draws a text in UTF-8. Its baseline begins at (x, baseline), in px from the left and the top. An
-/// invalid byte is drawn as U+FFFD. Text beyond the edge of the image is cut. Text wider than
+/// Draws a text in UTF-8. The baseline begins at (x, baseline), in px from the left and top edges.
+/// An invalid byte is drawn as U+FFFD. Text beyond the edge of the image is cut. Text wider than
 /// `room` px is cut and ends with "…".
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room);
@@ -79,7 +79,7 @@ struct SheetPanel {
 /// Precondition: `below` is opaque, and the two images have the same size.
 void lay_over(Image& below, const Image& above, double opacity);
 
-/// Draws a circle around (x, y), in px from the left and the top, between two light lines.
+/// Draws a circle with light outlines. (x, y): its centre, in px from the left and top edges.
 void draw_ring(Image& image, double x, double y, double radius, double line, const Rgba& colour);
 
 /// Returns a sheet with title and subtitle, the panels (at least one), and a line of small print.
@@ -87,22 +87,22 @@ void draw_ring(Image& image, double x, double y, double radius, double line, con
 Image compose(const std::string& title, const std::string& subtitle,
               std::vector<SheetPanel>& panels, const std::string& small_print);
 
-/// Pairs of a keyword, 1 to 79 printable ASCII characters, and a text in UTF-8.
+/// Pairs of a keyword (1 to 79 printable ASCII characters) and a text (UTF-8).
 using PngTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// Returns the bytes of a PNG with 8 bits each for red, green and blue. An ASCII text becomes a
-/// tEXt chunk, another text an iTXt chunk. The same image, texts and version of cairo give the same
-/// bytes. Throws Error if cairo fails. Precondition: the image has pixels, and all pixels are
+/// Returns the bytes of a PNG with 8 bits each for red, green and blue. ASCII texts become tEXt
+/// chunks, and other texts become iTXt chunks. The same image, texts and version of cairo give the
+/// same bytes. Throws Error if cairo fails. Precondition: the image has pixels, and all pixels are
 /// opaque.
 std::string to_png(const Image& image, const PngTexts& texts);
 
-/// The colour of missed pairs; nothing else has it.
+/// The colour of missed pairs. Nothing else is drawn in this colour.
 constexpr Rgba kMissedColour = {220, 0, 90};
-/// kFoundColour: colliding triangles. kIdleColour: triangles that a method kept, but that do not
-/// collide.
+/// kFoundColour: colliding triangles. kIdleColour: triangles that a method kept although they do
+/// not collide.
 constexpr Rgba kFoundColour = {0, 128, 116}, kIdleColour = {240, 176, 32};
-constexpr double kIdlePart = 0.6;  // share of kIdleColour; the rest is the object's colour
-constexpr double kThrough = 0.28;  // opacity of collisions behind other triangles
+constexpr double kIdlePart = 0.6;  // fraction of kIdleColour in its mix with the object's colour
+constexpr double kThrough = 0.28;  // opacity of colliding triangles that other triangles hide
 /// Colours of the objects, used in turn. They are pale, so that only collisions have strong
 /// colours.
 constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
@@ -119,15 +119,15 @@ struct PanelResult {
   std::string title;                             // "cullide at 128 px"
   std::string headline;                          // "missed 12 of 4,268 colliding pairs"
   std::uint64_t colliding = 0;                   // colliding pairs, by the exact method
-  std::uint64_t neighbours = 0;                  // colliding pairs of neighbours
+  std::uint64_t neighbours = 0;                  // colliding pairs in an object that share a vertex
   std::uint64_t missed = 0;                      // colliding pairs that the method did not find
   std::uint64_t missed_triangles = 0;            // triangles in a missed pair
   std::uint64_t kept = 0;                        // triangles that the method kept; 0 for `exact`
   std::uint64_t idle = 0;                        // kept triangles that are in no collision
   std::uint64_t rings = 0;                       // number of rings around small missed triangles
-  bool drew = false;                             // the method drew in views at a resolution
-  bool broken = false;                           // the method is guaranteed, but missed a pair
-  std::string device;                            // device used: a renderer, "cpu", or "none"
+  bool drew = false;                             // the method rendered views
+  bool broken = false;                           // the method guarantees all pairs, but missed one
+  std::string device;                            // name of the GL renderer used, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // place of the panel's picture in the image, px
 };
 
@@ -137,7 +137,7 @@ struct DrawnPanel {
 };
 /// Returns the width of lines in px for a picture of this size.
 double line_of(const Window& window);
-/// Returns an image of the triangles. Its other pixels are transparent.
+/// Returns an image of the triangles on a transparent background.
 Image painted(const GlContext& context, const Scene& scene, const Window& window,
               const std::vector<PictureTriangle>& triangles);
 /// Draws the missed triangles over the image. Draws rings around triangles that are too small to
@@ -152,7 +152,7 @@ std::string panel_title(const RunOptions& options);
 std::string headline_of(const PanelResult& result);
 /// Sets the title and the headline over the panel, and the colour of the headline.
 void set_heading(DrawnPanel& panel);
-/// Adds a line for a colour to the legend.
+/// Adds a line to the legend: a box of this colour, and the text.
 void explain(DrawnPanel& panel, Rgba colour, const std::string& text);
 void explain_rings(DrawnPanel& panel, const std::string& text);
 

@@ -1,5 +1,5 @@
-// Makes a picture: runs the methods, compares their pairs with the truth, and draws a panel for
-// each.
+// Makes a picture: runs the methods, compares their pairs with all colliding pairs, and draws a
+// panel for each method.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -34,12 +34,12 @@ void as_option(const std::string& option, Parse parse) {
 
 constexpr Rgba kPaper = {255, 255, 255};
 constexpr double kMargin = 0.04;     // margin around the scene, as a fraction of the picture's size
-constexpr double kZoomMargin = 0.1;  // as kMargin, around the collisions
+constexpr double kZoomMargin = 0.1;  // margin around the colliding triangles, likewise a fraction
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
-// Draws the scene, each triangle in the colour of its kind. The colliding triangles, `hit`, are
-// drawn over the triangles that hide them.
+// Draws each triangle in the colour of its `kind`. Then draws the colliding triangles, `hit`,
+// see-through over the triangles that hide them.
 Image scene_image(const Scene& scene, const Window& window, const std::vector<std::uint8_t>& kind,
                   const std::vector<std::uint32_t>& hit, const GlContext& context) {
   const double line = line_of(window);
@@ -258,7 +258,7 @@ void validate(const PictureArguments& arguments) {
 const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab) {
   const std::vector<std::string> words = arguments.scene.words();
   if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
-  // '\n' separates the parts: no name of a scene contains it.
+  // Joins the parts of the key by '\n', which no name of a scene contains.
   std::string key = arguments.self ? "self\n" : "\n";
   for (const std::string& word : words) key += word + "\n";
   if (arguments.frame) {
@@ -302,7 +302,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContex
   result.missed_triangles = answer.lost.size();
   result.kept = kept.size();
   result.idle = answer.idle.size();
-  // guaranteed() does not depend on the probes of the device, as in `farcull run`.
+  // As in `farcull run`, guaranteed() depends on the options alone, not on tests of the device.
   result.broken = guaranteed(record.options) && !answer.missed.empty();
   const UsedDevice& device = record.found.device;
   result.device = device.gl ? device.gl->renderer : device.cpu ? "cpu" : "none";

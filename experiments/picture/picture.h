@@ -1,5 +1,5 @@
-// `farcull picture`: a picture or a page with the answer of a method on a scene. It shows the
-// triangles that collide, those that the method missed, and those that it kept in vain.
+// `farcull picture`: makes a picture or an HTML page of a method's result on a scene. It shows the
+// colliding triangles, the missed triangles, and the kept triangles that do not collide.
 #pragma once
 
 #include "experiments/measure/harness.h"
@@ -9,7 +9,7 @@
 
 namespace farcull {
 
-/// The answer of a method on the scene of a picture, compared with all colliding pairs.
+/// The result of a method on a scene, compared with all colliding pairs.
 struct MethodAnswer {
   std::vector<TrianglePair> missed;  // colliding pairs that the method did not find; sorted
   std::vector<std::uint32_t> lost;   // triangles in a missed pair, ascending
@@ -21,8 +21,8 @@ struct MethodAnswer {
 /// and FrameSource do.
 const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab);
 
-/// Runs a method on `scene`, and compares the answer with lab.truth(). Uses the lab's device: the
-/// device and the verification in `options` are ignored. Throws Error as run() does. Precondition:
+/// Runs a method on `scene`, and compares the result with lab.truth(). Uses the lab's device, and
+/// ignores the device and the verification in `options`. Throws Error as run() does. Precondition:
 /// `scene` is the last scene that the lab opened.
 MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContext& lab);
 
@@ -32,7 +32,7 @@ struct PictureResult {
   std::string scene, scene_hash;
   std::uint64_t objects = 0, triangles = 0;
   std::vector<PanelResult> panels;
-  std::string not_asked;  // not_asked_line() of the scene (tables.h)
+  std::string not_asked;  // the pairs that were not tested, as not_asked_line() says (tables.h)
 };
 
 /// Runs the methods of the panels and draws the picture on the lab's device. If this device is
@@ -40,52 +40,52 @@ struct PictureResult {
 /// triangles, a scene that a method does not accept, and faults of the device.
 PictureResult make_picture(const PictureArguments& arguments, MeasurementContext& lab);
 
-// `farcull picture --html`: one file with the scene, the answers of methods on it, and everything
-// that a browser needs to show them. web/page_view.js reads the compressed numbers and bits.
+// `farcull picture --html` writes one file with the scene, the results of methods, and everything
+// that a browser needs to show them. web/page_view.js unpacks the numbers and bits.
 
-/// Returns Base64 of gzip of the numbers. Each number becomes its difference to the previous number
-/// (the first number: to 0) modulo 2^32. The differences 0, -1, 1, -2, ... get the codes 0, 1, 2,
-/// 3, ... The lowest bytes of all codes come first, then the next bytes, and so on. Neighbours are
-/// similar, so most bytes are 0.
+/// Returns Base64 of gzip of the numbers. Replaces each number by its difference from the previous
+/// one, modulo 2^32; the number before the first is 0. Encodes the differences 0, -1, 1, -2, ... as
+/// 0, 1, 2, 3, ... Writes the lowest bytes of all codes first, then the next bytes, and so on.
+/// Successive numbers are similar, so most bytes are 0.
 std::string packed_numbers(std::span<const std::uint32_t> numbers);
 
 std::string packed_bytes(std::string_view bytes);
 
-/// Returns `count` bits, eight in a byte, from the lowest bit on. A bit is 1 if `numbers` has its
-/// position. Precondition: the numbers are below `count`.
+/// Returns `count` bits, eight in a byte, lowest bit first. Bit i is 1 if `numbers` contains i.
+/// Precondition: the numbers are below `count`.
 std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
 
 /// Returns the coordinates in steps of 1/65535 of the box: all x, then all y, then all z. Points
-/// outside the box are moved to its border. If the box has no extent along an axis, these
-/// coordinates are 0.
+/// outside the box are moved to its border. If the box has no extent along an axis, the coordinates
+/// on this axis are 0.
 std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
 
-/// A page shows at most so many triangles, colliding pairs and objects. An object's number has 16
-/// bits.
+/// The largest numbers of triangles, colliding pairs and objects that a page can show. Objects are
+/// numbered with 16 bits.
 constexpr std::uint64_t kMostPageTriangles = 2'000'000, kMostPagePairs = 4'000'000,
                         kMostPageObjects = 65'536;
 
 struct PageArguments {
   PictureArguments picture;       // the flat picture; the page shows the same scene
-  std::vector<RunOptions> steps;  // the reader chooses one of these; at least one
+  std::vector<RunOptions> steps;  // the runs whose results the reader can choose; not empty
 };
 
 /// The resolutions that a reader can choose by default, px.
 constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
 
-/// Returns the methods of the panels: a method that draws once for each resolution, in ascending
-/// order; any other method once.
+/// Returns the options of the runs. A method that renders appears once for each resolution, in
+/// ascending order. Any other method appears once.
 std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
                                        std::vector<int> resolutions);
 
 struct PageResult {
   std::string html;
-  std::vector<PanelResult> steps;  // the answers, in the order of PageArguments::steps
+  std::vector<PanelResult> steps;  // the results, in the order of PageArguments::steps
 };
 
-/// Runs the methods of the steps and writes the page. flat: the picture of the same scene, for
-/// printing and for browsers without WebGL 2. Throws Error if the program was built without
-/// three.js, if the scene is too large, and as make_picture() does.
+/// Runs the methods of the steps, and returns the page. flat: the picture of the same scene, for
+/// printing and for browsers without WebGL 2. Throws Error as make_picture() does, if the program
+/// was built without three.js, or if the scene is too large.
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat,
                      MeasurementContext& lab);
 
@@ -93,15 +93,15 @@ PageResult make_page(const PageArguments& arguments, const PictureResult& flat,
 void require_three();
 
 /// Throws Error naming --html if the scene has too many triangles or objects for a page. Throws
-/// Error as open_scene() does. Called before the work.
+/// Error as open_scene() does. To be called before the methods run.
 void require_page_size(const PageArguments& arguments, MeasurementContext& lab);
 
-/// `farcull clash --html`: one file with the parts, the list of pairs that are not clear, and the
-/// curves in which surfaces cross. unit: the unit of the lengths; empty if it is not known. Throws
-/// Error as require_clash_page() does.
+/// Returns the page of `farcull clash --html`: the parts, the list of pairs that are not clear, and
+/// the curves in which surfaces intersect. unit: the unit of the lengths; empty if it is unknown.
+/// Throws Error as require_clash_page() does.
 std::string clash_page(const Scene& scene, const ClashRecord& record, const std::string& unit);
 
-/// Throws Error naming --html if no page can show the scene. Called before the work.
+/// Throws Error naming --html if no page can show the scene. To be called before the clash test.
 void require_clash_page(const Scene& scene);
 
 }  // namespace farcull

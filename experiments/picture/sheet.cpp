@@ -27,7 +27,7 @@ using Owned = std::unique_ptr<T, Free>;
 // Returns the layout of a text. Hinting is off, so that letters keep their shapes at every size and
 // place.
 Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
-  constexpr double kCapital = 1493.0 / 2048;  // a capital's height / the em, in DejaVu
+  constexpr double kCapital = 1493.0 / 2048;  // height of a capital letter in ems, for DejaVu
   const Owned<PangoContext> context(
       pango_font_map_create_context(pango_cairo_font_map_get_default()));
   const Owned<cairo_font_options_t> options(cairo_font_options_create());
@@ -75,8 +75,8 @@ void put(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-// Returns a PNG chunk with a text; cairo cannot write such chunks. In an iTXt chunk, two flags, a
-// language and a translated keyword stand before the text. These fields are empty here.
+// Returns a PNG chunk with a text, since cairo cannot write such chunks. An iTXt chunk has two
+// flags, a language and a translated keyword before the text. All of these are empty or 0 here.
 std::string chunk_of(const std::string& key, const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
   const std::string body =
@@ -103,7 +103,7 @@ void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room) {
   const Owned<PangoLayout> layout = laid_out(text, style, room);
   PangoLayoutLine* const line = pango_layout_get_line_readonly(layout.get(), 0);
-  PangoRectangle ink;  // the inked area, px from the left end of the baseline
+  PangoRectangle ink;  // bounding box of the glyphs, px from the left end of the baseline
   pango_layout_line_get_extents(line, &ink, nullptr);
   pango_extents_to_pixels(&ink, nullptr);
   const double column = std::floor(x), row = std::floor(baseline);
@@ -159,7 +159,7 @@ void draw_ring(Image& image, double x, double y, double radius, double line, con
 Image compose(const std::string& title, const std::string& subtitle,
               std::vector<SheetPanel>& panels, const std::string& small_print) {
   const int width = panels.front().image.width, height = panels.front().image.height;
-  // The height of letters, px. They are legible even if the sheet is shown at half size.
+  // Height of letters, px. Text stays legible even if the sheet is shown at half size.
   const double letter = std::clamp(width / 52.0, 7.0, 64.0);
   const int line = static_cast<int>(std::lround(1.75 * letter)), margin = line;
   std::size_t entries = 0;

@@ -1,5 +1,5 @@
-// What the files of the compiled module share: calls without the lock of the interpreter, arrays of
-// the caller as input, and answers as arrays.
+// Helpers of the compiled module: calls without the interpreter's lock, conversion of the caller's
+// arrays to an Input, and conversion of answers to arrays.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -18,8 +18,8 @@ namespace py = pybind11;
 
 /// Runs `work` in its own thread, without the lock of the interpreter, in the floating-point
 /// environment that the proofs assume. The calling thread waits, and checks for signals every 50
-/// ms. If a signal handler raises an exception (Ctrl-C does), `work` is told to stop, and the
-/// exception is thrown when `work` has ended. Exceptions of `work` are thrown to the caller.
+/// ms. If a signal handler raises an exception (Ctrl-C does), StoppableCall::stop() is called, and
+/// the exception is thrown after `work` has ended. Exceptions of `work` are thrown to the caller.
 /// Preconditions: the caller holds the lock; `work` does not touch Python.
 void run_without_gil(const std::function<void()>& work);
 
@@ -52,11 +52,12 @@ Progress stopping_progress();
 [[noreturn]] void raise(const std::string& where, const std::string& reason,
                         const std::string& remedy, bool input);
 
-/// The input of a call. Only its constructor and destructor need the interpreter.
+/// Converts arrays to the Input of a call. Only the constructor and destructor need the
+/// interpreter.
 class MeshArrays {
  public:
-  /// Contiguous arrays: vertices (n, 3), doubles; triangles (m, 3), int64 or uint32; object_starts;
-  /// poses (k, 3, 4), or empty if no object moves.
+  /// Takes contiguous arrays: vertices (n, 3), doubles; triangles (m, 3), int64 or uint32;
+  /// object_starts; poses (k, 3, 4), or empty if no object moves.
   MeshArrays(const py::array& vertices, const py::array& triangles,
              const py::array_t<std::int64_t>& object_starts, const py::array_t<double>& poses);
   MeshArrays(const MeshArrays&) = delete;

@@ -1,4 +1,4 @@
-// The collider and distances of the library.
+// Python classes for the library's Collider and DistanceFinder.
 #include <pybind11/stl.h>
 #include <unistd.h>
 
@@ -30,8 +30,7 @@ py::dict report_of(const Report& report) {
                   "stages"_a = std::move(stages));
 }
 
-// Returns the array of kinds and the array of segments; None in place of an array that `asked`
-// lacks.
+// Returns the array of kinds and the array of segments, each None if `asked` does not include it.
 std::pair<py::object, py::object> contact_arrays(const std::vector<Contact>& contacts,
                                                  Contacts asked) {
   if (asked == Contacts::none) return {py::none(), py::none()};
@@ -59,14 +58,15 @@ py::dict result_of(const Result& result, Contacts asked) {
                   "report"_a = report_of(result.report));
 }
 
-// A forked process lacks the threads of objects made before the fork.
+// Refuses an object made before a fork: the forked process lacks the object's threads.
 void require_process(pid_t maker, const char* made) {
   if (::getpid() == maker) return;
   raise(made, "was made by another process, which this one was forked from",
         "make one in each process", false);
 }
 
-// A Collider or a DistanceFinder. One thread at a time may use it, in the process that made it.
+// Holds a Collider or a DistanceFinder. Only the process that made a KeptFinder may use it, one
+// thread at a time.
 template <class Finder, class Asked>
 class KeptFinder {
  public:

@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds kLook{50};  // time between checks for signa
 
 // Maps and frees one large block. This makes the GNU C library keep more free memory for the
 // process. Otherwise each call requests the same pages again, which took half of the time of small
-// scenes. A limit that the environment or mallopt() has set stays.
+// scenes. A threshold that the environment or mallopt() has set is kept.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -37,8 +37,8 @@ void keep_small_memory() {
 #endif
 }
 
-// Lists a call while it runs. When the interpreter ends, it stops all running calls, since the
-// process then destroys objects that these calls use.
+// Lists a call while it runs. When the interpreter ends, end_all() stops all listed calls, since
+// the process then destroys objects that these calls use.
 class Running {
  public:
   explicit Running(StoppableCall& call) : call_(call) {
@@ -173,8 +173,8 @@ std::span<const Number> numbers_of(const py::array& array) {
   return {static_cast<const Number*>(array.data()), static_cast<std::size_t>(array.size())};
 }
 
-// pybind11 and numpy keep state in variables of the process, which all its interpreters would
-// share. pybind11 waits forever if it first sees an interpreter other than the main one.
+// pybind11 and numpy keep state in global variables, which all interpreters of a process share.
+// pybind11 waits forever if it first sees an interpreter other than the main one.
 constexpr const char* kNotMain =
     "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
     "process of its own";
@@ -189,15 +189,15 @@ void end_calls() {
 }
 
 void fill(py::module_& module) {
-  // Another interpreter gets this module without a second call of PyInit, so the package asks here.
+  // Other interpreters get this module without a call of PyInit, so the package calls this check.
   module.def("require_main_interpreter", [] {
     if (!in_main_interpreter()) throw py::import_error(kNotMain);
   });
-  // An Error that names a parameter becomes an InputError, any other one an Error; std::bad_alloc
-  // becomes a MemoryError.
+  // Converts an Error that names a parameter to InputError, any other Error to farcull.Error, and
+  // std::bad_alloc to MemoryError.
   py::register_exception_translator(&translate);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters(option_word);  // in records; as_parameters() does this for exceptions
+  spell_parameters(option_word);  // names in records; for exceptions see as_parameters()
   add_collider(module);
   add_distances(module);
   add_scenes(module);

@@ -249,7 +249,7 @@ GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   return out;
 }
 
-// certificate: its text; pairs: a list to check alone or with the certificate.
+// certificate: text of a certificate; pairs: a list to check, alone or with the certificate.
 py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certificate,
                   const std::optional<py::array>& pairs, std::optional<double> clearance) {
   const Scene& scene = *kept.scene;

@@ -1,4 +1,4 @@
-// Checks a certificate, a list of pairs, or both, by the checker of verify/certificate.
+// Checks a certificate, a list of pairs, or both, with the checker of verify/certificate.
 #include "experiments/record/check.h"
 
 #include <fmt/format.h>
@@ -68,7 +68,7 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
   return out;
 }
 
-// Checks a list without a certificate. Makes the evidence; then the checker verifies this evidence.
+// Checks a list that has no certificate. Makes evidence, which the checker then verifies.
 CheckResult check_list(const Scene& scene, const std::string& name,
                        std::span<const ListedPair> rows, double clearance) {
   const Stopwatch start;
@@ -77,7 +77,7 @@ CheckResult check_list(const Scene& scene, const std::string& name,
     const TrianglePair pair = pair_of(scene, name, row);
     if (pair.a != pair.b) listed.push_back(pair);
   }
-  // The evidence has to cover all pairs, so the pairs of ignored objects are added.
+  // The evidence has to cover all pairs, so the pairs of ignored objects are added to `listed`.
   if (const IgnoredObjects is_ignored(scene, scene.ignored); is_ignored.any()) {
     for (const TrianglePair& pair : all_colliding_pairs(scene, {.clearance = clearance}).pairs) {
       if (is_ignored(pair)) listed.push_back(pair);
@@ -97,7 +97,7 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
   CheckResult& result = check.result;
   check.list = list.name;
   check.not_looked_at = list.not_looked_at;
-  if (result.list_sha256.empty()) return;  // nothing was decided
+  if (result.list_sha256.empty()) return;  // empty: no pair was decided
   check.differences = find_differences(scene, list.name, rows, result.meeting, check.clearance);
   const ListDifferences& differ = *check.differences;
   const bool alone = check.certificate.empty();

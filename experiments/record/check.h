@@ -10,12 +10,12 @@ namespace farcull {
 
 /// The outcome for one scene: a certificate, a list of pairs, or both were checked.
 struct SceneCheck {
-  std::string certificate;  // a file; empty if a list was checked without a certificate
-  std::string list;         // a file; empty if no list was given
+  std::string certificate;  // name of the file; empty if a list was checked alone
+  std::string list;         // name of the file; empty if no list was given
   double clearance = 0;
-  std::string claimed_sha256;  // the hash of the list that the certificate names
+  std::string claimed_sha256;  // hash of the list, as the certificate states it
   Certificate::Claims claimed;
-  CheckResult result;                          // covers the list as well, if there is one
+  CheckResult result;                          // also covers the list, if one was given
   std::optional<ListDifferences> differences;  // set if a list was given and pairs were decided
   std::vector<std::string> not_looked_at;      // columns of the list that were not read
 };
@@ -24,16 +24,16 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 
 /// Returns what the verdict `proved` proves: "these 12 pairs of the scene meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// Returns the beginning of such a statement.
+/// Returns the beginning of this statement, without its limits.
 std::string proved_text(std::size_t pairs, double clearance);
-/// Returns the end of such a statement; empty if the statement is about all pairs. self: an object
+/// Returns the limits at the end of this statement; empty if it is about all pairs. self: an object
 /// is tested against itself; ignores: pairs of objects are ignored.
 std::string proved_limits(double clearance, bool self, bool ignores);
 /// Returns one line or two: the verdict, its reason, and the pair that the reason is about.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);
 std::string check_text(const Scene& scene, const SceneCheck& check);
-/// Returns lines about claims that no check can prove, and about unusual arithmetic of the caller;
-/// may be empty.
+/// Returns lines about claims that no check can prove, and about an unusual floating-point mode of
+/// the caller; may be empty.
 std::string unattested_text(const SceneCheck& check);
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check);
@@ -46,7 +46,7 @@ class FrameVerdicts {
   /// listed: how many pairs the verdict is about.
   void add(long frame, Verdict verdict, std::uint64_t listed);
   Verdict in_all() const;
-  /// wanted: how many frames were asked for.
+  /// wanted: how many frames were requested.
   nlohmann::ordered_json json(long wanted) const;
   /// proved: the statement to give if all frames are proved.
   std::string text(const std::string& proved) const;

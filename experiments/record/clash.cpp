@@ -41,7 +41,7 @@ std::string contact_words(const ClashRow& row) {
   return how + " in " + counted(n, "pair of triangles", "pairs of triangles");
 }
 
-/// Returns an id of two parts. It depends on their names, but not on the order of the names.
+/// Returns the id of a pair of parts. The id does not depend on the order of the names.
 std::string id_of(std::string a, std::string b) {
   if (b < a) std::swap(a, b);
   return sha256(a + '\n' + b).substr(0, 8);
@@ -55,7 +55,7 @@ struct CsvLine {
   std::vector<std::string> cells;
 };
 
-/// Splits a CSV, as csv_cell() writes it, into lines. Leaves out empty lines.
+/// Splits a CSV, in the form that csv_cell() writes, into lines. Skips empty lines.
 std::vector<CsvLine> csv_lines(const std::string& text) {
   std::vector<CsvLine> out;
   std::istringstream in(text);
@@ -113,7 +113,7 @@ std::string no_depth_words(const Scene& scene, const ClashRow& row) {
 
 std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
-  Table out("lllrrrll", 3);  // verdict and both names
+  Table out("lllrrrll", 3);  // 3 columns name a row: verdict and both names
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
   for (std::size_t k = 0; k < record.rows.size(); ++k) {
@@ -272,7 +272,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   const auto fail = [&](const std::string& reason, long line) {
     throw Error(name, reason, "name a file that farcull clash --csv wrote without --frames", line);
   };
-  using Row = std::array<std::string, 3>;  // two names in order, the verdict
+  using Row = std::array<std::string, 3>;  // two sorted names, the verdict
   const auto row_of = [](std::string a, std::string b, std::string verdict) {
     if (b < a) std::swap(a, b);
     return Row{std::move(a), std::move(b), std::move(verdict)};
@@ -285,7 +285,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
   if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
-  std::set<Row> old, forgiven;  // all rows of the file; its rows of ignored pairs
+  std::set<Row> old, forgiven;  // old: all rows of the file; forgiven: its rows of ignored pairs
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())

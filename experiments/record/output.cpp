@@ -89,7 +89,7 @@ Json contacts_json(const Record& record) {
   return out;
 }
 
-// Appends six cells: the two ends of a segment, or a point twice. Other shapes get empty cells.
+// Appends six cells: the two ends of a segment, or a point twice. For other shapes they are empty.
 void append_ends(const ContactShape& shape, std::string& out) {
   for (const Vec3& end : shape.ends) {
     for (const double x : end) {
@@ -139,8 +139,8 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
   return lines;
 }
 
-// A range of Collisions::pairs, and a range of Collisions::neighbour_pairs: the neighbours whose
-// rows come between the rows of these pairs.
+// A range of Collisions::pairs, and the range of Collisions::neighbour_pairs that lie between these
+// pairs in sorted order.
 struct RowRange {
   std::size_t pairs = 0, pairs_end = 0;
   std::size_t neighbours = 0, neighbours_end = 0;

@@ -21,7 +21,7 @@
 namespace farcull {
 
 /// Returns a value of a record as JSON. A struct with fields becomes an object, an enumeration its
-/// word, an empty optional null, a number that is not finite null. Other values stay as they are.
+/// word. An empty optional or a number that is not finite becomes null. Other values stay.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -98,8 +98,8 @@ std::string csv_cell(const std::string& text);
 
 /// The additional columns of pairs_csv(), and the choice of its rows.
 struct PairColumns {
-  bool faces = false;     // face_a, face_b: 0-based in the file of the object
-  bool contacts = false;  // contact: the kind. Precondition: the record has kinds
+  bool faces = false;     // columns face_a, face_b: 0-based in the object's file
+  bool contacts = false;  // column contact: the kind. Precondition: the record has kinds
   // Columns x0,y0,z0,x1,y1,z1: the ends of the common segment, or the common point twice, in world
   // units. Column polygon: the corners of the common polygon. Cells that do not apply are empty.
   // Precondition: the record has segments.
@@ -109,12 +109,12 @@ struct PairColumns {
   const ListNumbers* numbers = nullptr;  // null unless the scene is a part of another scene
 };
 
-/// Returns the colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once. If
-/// an object is tested against itself, colliding neighbours are included. `columns` come at the
-/// end.
+/// Returns the colliding pairs in the format of verify/certificate/pair_list.h, sorted, each once.
+/// If an object is tested against itself, colliding neighbours are included. The columns of
+/// `columns` come last.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
-/// Gives pairs_csv() to `sink` part by part, so that the whole text is never in memory. All cores
-/// make the parts.
+/// Passes the text of pairs_csv() to `sink` part by part, so that the whole text is never in
+/// memory. The parts are made on all cores.
 void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
                     const TextSink& sink);
 /// Return the header and the rows of pairs_csv(). Each row begins with `before`.
@@ -194,10 +194,10 @@ nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
 /// lists the pair with such a value.
 struct WorstClash {
   std::string name_a, name_b, id;
-  ClashVerdict verdict = ClashVerdict::clear;  // the most serious one
+  ClashVerdict verdict = ClashVerdict::clear;  // the most serious verdict
   bool ignored = false;
   long frames = 0, first = 0, last = 0;  // number, first and last of the frames with this verdict
-  std::optional<double> depth = {};      // the largest lower bound
+  std::optional<double> depth = {};      // the largest lower bound on the depth
   std::optional<double> distance = {};   // the least distance; 0 if the surfaces meet
   std::optional<long> deepest = {}, nearest = {};  // the first frame with `depth`, `distance`
   FARCULL_FIELDS(name_a, name_b, id, verdict, ignored, frames, first, last, depth, deepest,
@@ -207,11 +207,11 @@ struct WorstClash {
 /// Collects the records of `farcull clash --frames`.
 class ClashFrames {
  public:
-  /// wanted: how many frames were asked for.
+  /// wanted: how many frames were requested.
   explicit ClashFrames(long wanted) : wanted_(wanted) {}
 
   struct Report {
-    nlohmann::ordered_json head, frame, summary;  // parts of the JSON, like those of FrameReport
+    nlohmann::ordered_json head, frame, summary;  // parts of the JSON, as in FrameReport
     std::string csv;                              // clash_csv() with a first column `frame`
     std::string text;                             // the number of pairs by verdict
   };

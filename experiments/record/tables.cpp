@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kExamplesShown = 5;
 
-// Wraps the lines of an answer. They are shorter than the lines of tables.
+// Wraps the lines of an answer to at most 80 columns. Tables may be wider.
 std::string answer(const std::string& text) {
   return wrapped(text, std::min<std::size_t>(80, text_columns()));
 }
@@ -84,14 +84,14 @@ std::string radius_line(const Record& record) {
   return line + "\n";
 }
 
-// A row of the stage table. It stands for one stage, for all stages of one view in the first round,
-// or for all stages of the later rounds, in which little happens.
+// A row of the stage table: one stage, all stages of one view in the first round, or all stages of
+// the later rounds.
 struct Row {
   std::string key;  // stages with the same key share a row; empty: the row has one stage
   std::string name;
   std::string note;
   std::vector<std::string> views;  // views of later rounds, or names of stages that were left out
-  Stage sum;                       // the sum of ms of the stages, the first `in`, the last `out`
+  Stage sum;                       // sums of ms; `in` of the first stage, `out` of the last
 };
 
 // Returns the key of a stage's row: the view, or "later rounds". Empty if the stage has a row of
@@ -102,8 +102,7 @@ std::string key_of(const Stage& stage) {
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
-// Adds a stage that was left out: to the last row, if that has the same reason, otherwise as a new
-// row.
+// Adds a stage that was left out: to the last row if the reason is the same, else as a new row.
 void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
   if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
@@ -234,7 +233,7 @@ std::string ignored_line(const Record& record) {
   if (record.options.ignored.empty()) return "";
   const std::string objects =
       counted(record.options.ignored.size(), "pair of objects", "pairs of objects");
-  // If boxes decide, ignored objects are left out before there are candidates to count.
+  // If boxes decide, pairs of ignored objects never become candidates, so none are counted.
   if (record.found.ignored == 0)
     return "ignored    " + objects + ", of which no candidate pairs were made\n";
   return fmt::format("ignored    {} of {}\n",

@@ -28,10 +28,10 @@ NothingToTest nothing_to_test(const Scene& scene);
 /// method.
 std::string default_method_line(const RunOptions& options);
 
-/// The words for a drawing method that did not draw, since boxes left nothing.
+/// Text for a drawing method that did not draw, because the box tests left nothing to draw.
 inline constexpr const char* kNothingToDraw = "nothing left to draw";
 /// Returns why a drawing method did not draw, such as kNothingToDraw. Empty if the method drew, or
-/// if it is no drawing method.
+/// if the method does not draw at all.
 std::string not_drawn_text(const Record& record);
 /// If the method is guaranteed and draws on the cores of a CPU, returns a line that names a faster
 /// method (docs/results/stages.md). Otherwise returns an empty text.
@@ -55,7 +55,7 @@ std::string scene_text(const Scene& scene, std::uint64_t degenerate_triangles);
 /// Returns a line with the number of rows that a table does not show; empty if it shows all rows.
 std::string more_line(std::size_t all, std::size_t shown);
 
-/// Returns lines that say what was run, on which device, and what was not tested.
+/// Returns lines about what was run, on which device, and what was not tested.
 std::string run_heading(const Scene& scene, const Record& record);
 
 /// Returns a row for each stage: its time, how many items it got and left, and its reason.

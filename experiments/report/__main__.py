@@ -16,7 +16,7 @@ import signal
 import subprocess
 import sys
 
-# A row that promises breaks its promise if one of these counts is above 0. Some counts are about missing answers.
+# A row with a promise breaks the promise if one of these counts is above 0. Some counts are about missing answers.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
           "no_memory")
 FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # first and last chapters; the program orders the rest
@@ -31,7 +31,7 @@ class Refusal(Exception):
 
 
 class Interrupted(BaseException):
-    """One of the signals that end a program."""
+    """Raised by a signal that ends the program."""
 
 
 try:
@@ -66,9 +66,9 @@ def check_place(place):
 
 
 class Unfinished:
-    """The folder .report-unfinished, in which a report is made. publish() puts the folder in place; an unpublished folder
-    is removed in the end. A lock keeps other processes from making a report of the same results, so folders that a killed
-    process left can be removed."""
+    """The folder .report-unfinished, in which a report is made. publish() puts the folder in place; an unpublished folder is
+    removed at the end. A lock keeps other processes from making a report of the same results, so folders that a killed process
+    left can be removed."""
 
     def __init__(self, results):
         self.place, self.path, self.old = (results / name for name in ("report", ".report-unfinished", ".report-old"))
@@ -98,7 +98,7 @@ class Unfinished:
                           "see who may write to the folder") from error
 
     def __exit__(self, *_):
-        if self.old.exists() and not self.place.exists():  # killed between the two steps of publish()
+        if self.old.exists() and not self.place.exists():  # a process was killed between the two steps of publish()
             self.old.rename(self.place)
         for path in (self.path, self.old):
             shutil.rmtree(path, ignore_errors=True)
@@ -164,7 +164,7 @@ class Reporter:
         self.counts["table"] += len(chapter.tables)
 
     def picture(self, picture, root):
-        """Makes a picture. Adds the promises that were broken in it."""
+        """Makes a picture. Adds the promises that the picture's run broke."""
         self.say("picture " + picture.name)
         out, path = pages.DrawnPicture(picture), root / "pictures" / (picture.name + ".png")
         try:
@@ -180,7 +180,7 @@ class Reporter:
         return out
 
     def run_picture(self, picture, path):
-        """Runs `farcull picture`. Returns what it printed about broken promises."""
+        """Runs `farcull picture`. Returns the lines that it printed about broken promises."""
         device = ["--device", self.arguments.device] if self.arguments.device is not None else []
         done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, "-o", path],
                               capture_output=True, stdin=subprocess.DEVNULL, text=True, errors="replace")

@@ -72,8 +72,8 @@ def names_of(figure):
 
 
 def looks_of(figure):
-    """Returns a Look for each name. Names of one method differ in dashes and markers. Emphasised lines are thick. An
-    emphasised line is thinner than the lines below it, so that lines with the same values all stay visible."""
+    """Returns a Look for each name. Names of one method differ in dashes and markers. Emphasised lines are thick. Each further
+    emphasised line is thinner, so that lines with the same values all stay visible."""
     out, times, unknown, thick = {}, {}, 0, 0
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
     for name in names_of(figure):
@@ -257,21 +257,21 @@ class Drawer:
                                columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
         self.canvas.draw_without_rendering()
         self.canvas.set_layout_engine("none")  # the layout is the same for each kind of file
-        for ax in self.canvas.axes:  # the solver's last digits differ from run to run
+        for ax in self.canvas.axes:  # rounds, since the solver's last digits differ from run to run
             ax.set_position([round(at, 5) for at in ax.get_position(original=True).bounds])
         for ax, panel in zip(self.canvas.axes if labelled else [], panels):
             self.label(ax, panel)
 
     def label(self, ax, panel):
-        """Writes the labels beside their points: the first label of each series, then the rest, the longest first. A label takes
-        the place where it covers least. It may cover nothing and must lie inside the axes; otherwise it is left out. Only the
-        first label of a series is never left out."""
+        """Writes the labels beside their points: the first label of each series, then all other labels, the longest first. Each
+        label is put where it covers least. A label that covers anything or is partly outside the axes is left out, except for the
+        first label of a series."""
         scale = 72 / self.canvas.dpi
         inside = [at * scale for at in ax.bbox.extents]
         points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
                   for *at, text in zip(s.x, s.y, s.labels or [""] * len(s.x)) if len(finite(at)) == 2]
         taken = [(x - 3, y - 3, x + 3, y + 3) for *_, x, y in points]
-        for s in panel.series:  # bars are taken as well, and lines, cut into squares
+        for s in panel.series:  # intervals and lines cannot be covered, either; lines are cut into squares
             for low, high, y in zip(s.x_low, s.x_high, s.y):
                 (left, at), (right, _) = (ax.transData.transform((x, y)) * scale for x in (low, high))
                 taken.append((left, at - 2, right, at + 2))
@@ -319,7 +319,7 @@ class Drawer:
         for mark in panel.marks:
             if math.isfinite(mark.at) and (mark.at > 0 or not (panel.x if mark.vertical else panel.y).log):
                 (ax.axvline if mark.vertical else ax.axhline)(mark.at, **mark_look(self.figure, mark.name))
-        # Draws the thick, emphasised series first, so that a series with the same values stays visible above them.
+        # Draws the thick, emphasised series first, so that a series with the same values stays visible on top of them.
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "no valid measurement", transform=ax.transAxes, ha="center", va="center", color="#666666")
@@ -329,8 +329,8 @@ class Drawer:
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
     def names(self, ax, panel):
-        """Writes the name of each point beside the point. The names of points near 0 stand below 0, each lower than the name
-        to its left, so that no leader crosses a name. The x axis begins where all names have room."""
+        """Writes the name of each point beside the point. Names of points near 0 are written below 0. Each is lower than the name
+        to its left, so that no leader line crosses a name. The x axis starts so far left that all names fit."""
         points = sorted((s.x[0], s.y[0], s.name) for s in panel.series)
         near, last, (low, high) = [p for p in points if p[1] < 10], 0, map(math.log, ax.get_xlim())
         heights = []

@@ -1,6 +1,6 @@
 """Numbers of a report: medians, intervals and exponents, and their formats.
 
-docs/experiments.md, "Statistics", says which interval holds what, and when none is given.
+docs/experiments.md, "Statistics", says which interval is used where, and when no interval is given.
 """
 import functools
 import math
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 NONE = math.nan  # a gap in a line
-FEWEST_FOR_INTERVAL = 6  # points; with fewer, t is large and the interval says little
+FEWEST_FOR_INTERVAL = 6  # points; with fewer, Student's t is large and the interval is of little use
 
 
 @dataclass
@@ -45,8 +45,8 @@ def median_estimate(values, rounds=()):
 
 
 def ratio_estimate(over, under):
-    """Returns the median of the ratios of two runs in the same turn of a round, with its interval; None without ratios. What
-    slows a turn slows both runs, so it hardly changes their ratio."""
+    """Returns the median of the ratios of two runs in the same turn of a round, with its interval; None without ratios. A
+    slowdown in a turn affects both runs, so their ratio hardly changes."""
     rounds = [tuple(a / b for a, b in zip(*both)) for both in zip(over, under)]
     ratios = [ratio for of in rounds for ratio in of]
     return median_estimate(ratios, rounds) if ratios else None
@@ -85,7 +85,7 @@ def solved(rising, target, low, high):
 
 @functools.lru_cache(maxsize=None)
 def rate_of(hits, of):
-    """Returns a rate with its 95 % interval by Clopper and Pearson; without a hit, with the upper bound at 95 %."""
+    """Returns a rate with its 95 % interval by Clopper and Pearson. If there are no hits, `high` is the 95 % upper bound."""
     if hits == 0:
         return Estimate(0, 0, 1 - 0.05 ** (1 / of), of)
     low = solved(lambda p: beta_share(hits, of - hits + 1, p), 0.025, 0, 1)
@@ -178,8 +178,8 @@ def share(part, whole):
 
 
 def rate_text(hits, of):
-    """Returns a text such as `0 of 114,014 (95 % bound: at most 2.6e-5)`; with hits, the share and its interval follow. Only
-    for cases that were drawn independently, such as random placements, not for pairs, objects or frames of a scene."""
+    """Returns a text such as `0 of 114,014 (95 % bound: at most 2.6e-5)`; with hits, the share and its interval follow. Use it
+    only for cases that were drawn independently, such as random placements; not for pairs, objects or frames of a scene."""
     if of == 0:
         return of_all(hits, of)
     rate = rate_of(int(hits), int(of))
@@ -197,7 +197,7 @@ def spread(values, unit=""):
 
 
 def estimate_text(e, digits=3):
-    """Returns a text such as `3.88 (3.70 to 4.10)`; for one run only its value; for none `-`."""
+    """Returns a text such as `3.88 (3.70 to 4.10)`; for one run, only the value; for no run, `-`."""
     if e is None or e.n == 0:
         return "-"
     if e.n == 1:

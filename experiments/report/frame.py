@@ -102,7 +102,7 @@ class Figure:
     panels: list = field(default_factory=list)
     columns: int = 0      # columns of panels, up to 4; 0: draw.py chooses
     narrow: bool = False  # as wide as one of two columns of a journal
-    named: bool = False   # each series is one point with its name beside it; no key
+    named: bool = False   # each series is one point with its name beside it; there is no key
 
 
 @dataclass
@@ -134,7 +134,7 @@ class Chapter:
     figures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     pictures: list = field(default_factory=list)
-    files: dict = field(default_factory=dict)     # more files of the report: the text by the name
+    files: dict = field(default_factory=dict)     # further files of the report: from name to text
 
     def find(self, text):
         self.findings.append((False, text))
@@ -191,7 +191,7 @@ def method_label(point):
 
 
 def contestant(point):
-    """Returns method_label(). Adds the radius if it is not the budget, and says if views have both directions."""
+    """Returns method_label(). Adds the radius if it is not the budget, and a note if views have both directions."""
     out = method_label(point)
     if point.radius not in ("", "budget"):
         published = point.radius == "published"
@@ -239,7 +239,7 @@ def flag(row, name):
 
 
 def text(row, name):
-    """Returns a count that is a text; "" if the row has no such text."""
+    """Returns a value that is a text; "" if the row has no such text."""
     out = getattr(row, name, "")
     return out if isinstance(out, str) else ""
 
@@ -279,7 +279,7 @@ def by(rows, name, sort=False):
 
 
 def groups(rows, name):
-    """Returns by(), but in the order of the values."""
+    """Returns the pairs of by(), sorted by the values."""
     return by(rows, name, True)
 
 
@@ -298,7 +298,7 @@ def estimate(row):
 
 
 def false_positives(row):
-    """Returns candidates that do not collide / colliding pairs; NaN if no pair collides."""
+    """Returns the ratio of candidates that do not collide to colliding pairs; NaN if no pair collides."""
     colliding = value(row, "colliding")
     if not colliding > 0:
         return NONE
@@ -311,8 +311,8 @@ def of_rows(rows, part, whole):
 
 
 def missed_of(rows):
-    """Returns a text such as `4 of 3,857 (0.10 %, on 2 of 9 scenes)`. It has no interval, since the pairs of a scene are not
-    independent, and the scenes were chosen by hand."""
+    """Returns a text such as `4 of 3,857 (0.10 %, on 2 of 9 scenes)`. The share has no interval, since the pairs of a scene are
+    not independent, and the scenes were chosen by hand."""
     missed, colliding = total(rows, "missed"), total(rows, "colliding")
     scenes = rows.scene.map(scene_base)
     hit = scenes[column(rows, "missed") > 0].nunique()
@@ -346,7 +346,7 @@ def series_of(name, rows, x, y, **look):
 
 
 def times_of(name, rows, x, **look):
-    """Returns series_of() whose y is the time from triangles to pairs, in ms, with the interval of each time."""
+    """Returns series_of() with y as the time from triangles to pairs, in ms, with the interval of each time."""
     none = Estimate(NONE, NONE, NONE, 0)
     out = series_of(name, rows, x, lambda row: (estimate(row) or none).value, **look)
     for row in rows.itertuples():
@@ -398,8 +398,8 @@ def exponents_table(name, x):
 
 
 def times_panel(title, axis, x, methods, exponents, plot):
-    """Returns a panel of times over the column x. methods: for each name, whether it is emphasised, and its rows. Adds a row
-    for each method to the table `exponents`."""
+    """Returns a panel of times over the column x. methods: for each name, whether the line is emphasised, and the rows. Adds a
+    row for each method to the table `exponents`."""
     out = Panel(title, log(axis, zero=True), log("time (ms)"))
     for name, (emphasis, rows) in methods.items():
         out.series.append(times_of(name, rows, x, emphasis=emphasis))
@@ -468,8 +468,8 @@ def same_pixels(rows, row):
 
 
 def at_risk(rows, row):
-    """Returns how many pairs are lost with 0.9 of the radius, and how many without a ball, in the same scene, views and
-    pixels; NaN: not known. If FAR was not run without a ball, the count of CULLIDE is taken."""
+    """Returns how many pairs are lost with 0.9 of the radius, and how many without a ball (radius 0), in the same scene, views
+    and pixels. NaN: not known. If FAR was not run with radius 0, the second number is the count of CULLIDE."""
     if row.method != "far":
         return NONE, NONE
     here = same_pixels(rows, row)
@@ -503,21 +503,21 @@ def risk_text(rows, pairs):
 
 
 def culled_shares(rows):
-    """Returns how many per cent of all triangles boxes took away, and how many per cent views took away. If an object is
-    tested against itself, FAR keeps some triangles that boxes leave to no view, for pairs in one patch."""
+    """Returns the per cent of all triangles that boxes culled, and the per cent that views culled. If an object is tested against
+    itself, FAR also keeps triangles that boxes left to no view, for pairs in one patch. These count as left by boxes."""
     triangles, kept = total(rows, "triangles"), total(rows, "kept_triangles")
     left = int(np.fmax(column(rows, "left_by_boxes"), column(rows, "kept_triangles")).sum())
     return share(triangles - left, triangles), share(left - kept, triangles)
 
 
 def without_size(row):
-    """Returns the contestant without the size of triangles, by which only its resolution was chosen."""
+    """Returns the contestant's name without the size of triangles. The size only chose the resolution."""
     return contestant(row._replace(method=row.method.split(" @")[0]))
 
 
 def add_kept(chapter, rows, pairs):
-    """Adds that the rows missed nothing. Rows in which views decided could have lost the pairs at risk. Rows in which boxes
-    alone decided could not have lost a pair, and are reported separately."""
+    """Adds a finding that the rows missed nothing. Rows in which views decided could have lost the pairs at risk. Rows in which
+    boxes alone decided could not have lost a pair, and are reported separately."""
     used = column(pairs, "views_used")
     for runs, words in ((pairs[used > 0], " in which views decided"), (pairs[used == 0], " in which boxes alone decided"),
                         (pairs[used.isna()], "")):
@@ -541,7 +541,7 @@ def fill(chapter, study):
 
 
 def add_gaps(chapter, study):
-    """Adds to the limits why points and times were left out, and how many points have no row."""
+    """Adds the reasons why points and times were left out, and the number of points without a row, to chapter.limits."""
     reasons = study.all_rows.left_out[study.all_rows.left_out != ""]
     for reason, count in sorted(reasons.value_counts().items()):
         chapter.limits.append(f"Left out at {of_all(count, len(study.points))} points: {reason}.")

@@ -14,8 +14,8 @@ from estimates import grouped, of_all, sentence
 from frame import Table, columns
 
 FRONT = "headline"  # the study of the first page
-MOST_ROWS = 16  # a longer table is not on the page; it has a file
-MARK = '<meta name="generator" content="farcull report">'  # marks an index.html of this program
+MOST_ROWS = 16  # a table with more rows is only in a file, not on the page
+MARK = '<meta name="generator" content="farcull report">'  # marks an index.html that this program made
 
 
 @dataclass
@@ -68,7 +68,7 @@ def runs_table(page):
 # ---- Markdown
 
 def markdown_prose(text):
-    """Escapes signs of Markdown outside code. Escapes bars everywhere, since a bar in code ends a cell of a table."""
+    """Escapes Markdown's special characters outside code. Escapes bars everywhere, since a bar in code ends a cell of a table."""
     parts = re.split("(`[^`]*`)", re.sub(r"[\n\r]", " ", text))
     return "".join(part.replace("|", "\\|") if part[:1] == "`" and len(part) > 1
                    else re.sub(r"([\\*_<>|\[\]#`])", r"\\\1", part) for part in parts)
@@ -120,7 +120,7 @@ def section(number, drawn, count):
 
 
 def front_markdown(page):
-    """Returns the beginning of the page: broken promises; then figure, table and sentences of the study "headline"."""
+    """Returns the beginning of the page: broken promises; then the figure, table and sentences of the study "headline"."""
     out = "# Results\n\n"
     if broken(page):
         out += ("**Broken.** What must never happen has happened:\n\n" +
@@ -133,7 +133,7 @@ def front_markdown(page):
 
 
 def rest_markdown(page):
-    """Returns the rest of the page: a chapter for each other study, and where the studies were measured."""
+    """Returns the remaining page: a chapter for each other study, and where the studies were measured."""
     count = collections.Counter()
     out = (f"All of this page is made from the store of results by `farcull report {shlex.quote(page.folder)}`: no number "
            "was typed. Counts are the same, bit for bit, on the same device and CPU features; times are of the machine "
@@ -173,7 +173,7 @@ def html_text(text):
 
 
 def html_prose(text):
-    """Converts a line of Markdown to HTML. Knows only the signs that this file writes."""
+    """Converts a line of Markdown to HTML. Handles only the Markdown that this file writes."""
     def of(match):
         escaped, code, strong, words, to, plain = match.groups()
         return (f"<code>{html_text(code.replace(chr(92) + '|', '|'))}</code>" if code else
@@ -216,7 +216,7 @@ def page_html(page):
     front, body = ("".join(block_html(block, images) for block in part.strip("\n").split("\n\n"))
                    for part in (front_markdown(page), rest_markdown(page)))
     contents = "".join(f'<li><a href="#{name}">{title}</a></li>\n' for name, title in re.findall('<h2 id="(.*?)">(.*?)</h2>', body))
-    return (  # a browser looks for an icon beside a page without its own
+    return (  # an empty icon, since a browser would otherwise look for one
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n<title>Results of farcull</title>\n'
         f'<link rel="icon" href="data:,">\n<style>\n{STYLE}</style>\n</head>\n<body>\n{front}'
@@ -227,14 +227,14 @@ def page_html(page):
 
 # ---- tables
 
-# Signs that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
+# Characters that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
 LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
          "→": "$\\to$", "−": "$-$", "∞": "$\\infty$", "µ": "$\\mu$", "≈": "$\\approx$",
          "⁻": "$^{-}$", **{d: f"$^{i}$" for i, d in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
          **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
          "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
          "|": "$|$", "`": ""}
-ROWS_OF_FLOAT = 40  # rows in one float, which fits on a page
+ROWS_OF_FLOAT = 40  # rows in one float, so that the float fits on a page
 
 
 def latex_text(text):

@@ -27,7 +27,7 @@ FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then 
 # Scenes whose exact tests take longer than drawing. Other directions of views are tried on these scenes.
 LOOKED_AT = "needles-crossed needles-layers cad-cut mannequin-devil+self".split()
 DIRECTIONS, SIDES = 20, (64, 1024)
-# One of these is the fastest on every scene of docs/results/bench.md.
+# One of these libraries is the fastest on every scene of docs/results/bench.md.
 PEERS = "embree-low,embree-medium,cgal-object-pairs,fcl-obb,bullet-gimpact"
 PARTS = {"boxes": "#e69f00", "views": "#0072b2", "pairs": "#56b4e9", "exact tests": "#009e73"}
 
@@ -41,7 +41,7 @@ def part_of(stage):
 
 
 def record_of(program, command, scene, *words):
-    """Runs a command of the program on a scene. Returns what the command writes as JSON."""
+    """Runs a command of the program on a scene. Returns the JSON that the command writes."""
     name, *flags = scene.split("+")
     out = subprocess.run([program, command, name, *words, *(f"--{flag}" for flag in flags), "--json", "-"],
                          capture_output=True, text=True)
@@ -55,7 +55,7 @@ def drawn(form, side, *words):
 
 
 def run(program, scene, form):
-    """Returns ms of each part, triangles that boxes and each view of round 1 left, pairs tested, and pairs found."""
+    """Returns ms of each part, the triangles that boxes and each view of round 1 left, the pairs tested, and the pairs found."""
     words = ("--method", form, "--no-verify") if form in (DEFAULT, "exact") else drawn(form, SIDE)
     record = record_of(program, "run", scene, *words)
     ms, left = dict.fromkeys(PARTS, 0.0), {}
@@ -142,7 +142,7 @@ def slower(results):
 
 
 def looked_along(program, scene):
-    """Returns a row: what one view of `--broad-phase triangles` leaves at best, among the axes and random directions."""
+    """Returns a row about the view that leaves fewest pairs with `--broad-phase triangles`, of axes and random directions."""
     numbers = random.Random(1)
     directions = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
     while len(directions) < DIRECTIONS:

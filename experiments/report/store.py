@@ -19,7 +19,7 @@ class Store:
     def __init__(self, folder):
         self.folder, self.path = folder, f"{folder}/results.sqlite"
         name = urllib.parse.quote(str(pathlib.Path(self.path).absolute()))
-        # Opened read-write: SQLite first rolls back the unfinished work of a killed program.
+        # Opened read-write, so that SQLite can first roll back the unfinished work of a killed program.
         self.database = sqlite3.connect(f"file:{name}?mode=rw", uri=True)
         self.runs = self.read("SELECT * FROM runs ORDER BY run")
         self.names = list(self.read("SELECT study FROM studies ORDER BY rowid").study)
@@ -60,8 +60,8 @@ class Store:
 
 
 def other_devices(folder, first):
-    """Returns the stores of further devices in the folder, sorted by name, and notes about stores that were left out, since
-    they are of another commit."""
+    """Returns the stores of further devices in the folder, sorted by name, and notes about stores that were left out because they
+    are of another commit."""
     stores, notes = [], []
     for path in sorted(pathlib.Path(folder).glob("on-*/results.sqlite")):
         other = Store(f"{folder}/{path.parent.name}")

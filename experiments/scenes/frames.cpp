@@ -30,7 +30,7 @@ std::optional<Error> missing_file(const std::vector<std::string>& paths, const F
       return std::filesystem::exists(numbered(path, number), error);
     };
     if (!is_numbered(path) || exists(frame)) continue;
-    constexpr long kTried = 1000;  // numbers below this are tried; most files begin at 0 or 1
+    constexpr long kTried = 1000;  // first numbers below this are tried; most are 0 or 1
     long first = exists(range.first) ? range.first : 0;
     while (first < kTried && !exists(first)) ++first;
     long last = first;

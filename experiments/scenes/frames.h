@@ -24,19 +24,19 @@ FrameRange parse_frames(const std::string& text);
 /// A scene that depends on the number of a frame.
 class FrameSource {
  public:
-  /// arguments: as for load_scene(): a built-in scene that moves, or meshes. Some names of meshes
-  /// have %d or %04d, the number of the frame. self: every object is tested against itself. Throws
-  /// Error if nothing moves, or as load_scene() does for the first frame.
+  /// arguments: as for load_scene(), either a built-in scene that moves, or meshes. A %d or %04d in
+  /// the name of a mesh stands for the number of the frame. self: every object is also tested
+  /// against itself. Throws Error if nothing moves, or as load_scene() does for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
   explicit FrameSource(MovingScene moving);
 
-  /// Returns the scene at a frame of the range, each time the same Scene object. The triangles stay
-  /// in the same memory if topology_changed() is false. Throws Error naming the file if a mesh
-  /// cannot be read, or as MovingScene does.
+  /// Returns the scene at a frame of the range. Every call returns the same Scene object. The
+  /// triangles stay in the same memory if topology_changed() is false. Throws Error naming the file
+  /// if a mesh cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
-  /// The Error that at() would throw for the first frame of the range that lacks a file. Empty if
-  /// no file is missing.
+  /// Returns the Error that at() would throw for the first frame of the range that lacks a file.
+  /// Empty if no file is missing.
   std::optional<Error> missing() const;
 
   /// True if the last call of at() changed the indices of triangles, the number of vertices or the
@@ -50,7 +50,7 @@ class FrameSource {
   bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
-  Scene scene_;  // the current frame; empty for a built-in motion without ignored objects
+  Scene scene_;  // the current frame; unused by a built-in motion without --ignore
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Object> objects_;

@@ -40,7 +40,7 @@ std::size_t find_plain(std::string_view text, char character, std::size_t from =
 }
 
 /// True if the name matches the pattern; a * in the pattern stands for any characters. After a
-/// mismatch, the last * takes one more character.
+/// mismatch, the last * is matched with one more character.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
   while (n < name.size()) {
@@ -68,8 +68,8 @@ std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view patte
   return out;
 }
 
-/// True if the pattern is the name of some of the `objects`, but not of all. It matches all of
-/// them.
+/// True if the pattern is the exact name of some of the `objects`, but not of all. Precondition:
+/// the pattern matches all `objects`.
 bool doubtful(const Scene& scene, std::string_view pattern,
               const std::vector<std::uint32_t>& objects) {
   const auto named = std::ranges::count_if(
@@ -79,7 +79,7 @@ bool doubtful(const Scene& scene, std::string_view pattern,
 
 constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
 
-/// Returns the end of a remedy: the name that was probably meant, and some names of objects.
+/// Returns the end of an Error's remedy: the name probably meant, and some names of objects.
 std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> known;
@@ -105,8 +105,8 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
   return in_order(std::move(out));
 }
 
-/// Appends the pairs of objects that names.text stands for. One colon separates the two names; each
-/// colon in the text is tried.
+/// Appends the pairs of objects that names.text stands for. A name may contain colons, so each
+/// colon of the text is tried as the separator of the two names.
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;

@@ -55,8 +55,8 @@ struct Lines {
   std::vector<long> meshes, ignored;
 };
 
-// Reads only the syntax of a text. Finds what json::parse does not report: the place of the first
-// error, a key that occurs twice, and Lines.
+// Checks the syntax of a JSON text. Finds data that json::parse does not report: the place of the
+// first error, a key that occurs twice in one object, and line numbers (Lines).
 class Syntax : public nlohmann::json_sax<json> {
  public:
   // line: the line of the character that was read last.
@@ -106,7 +106,7 @@ class Syntax : public nlohmann::json_sax<json> {
   const long& line_;
   std::vector<std::set<std::string>> keys_;
   int arrays_ = 0;    // number of open arrays
-  std::string last_;  // the key of the outermost object that was read last
+  std::string last_;  // the last key of the outermost object
 };
 
 // Returns the path of a mesh whose name is relative to the scene file.
@@ -139,8 +139,8 @@ class SceneFile {
     return builder;
   }
 
-  // Returns the pairs of ignored objects. Precondition: `scene` has the objects of the file; names
-  // are enough.
+  // Returns the pairs of ignored objects. Precondition: `scene` has the objects of the file. Only
+  // their names are used.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
                                        UnknownName lacking = UnknownName::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
@@ -311,7 +311,7 @@ class SceneFile {
     return out;
   }
 
-  // Returns the upper three rows of a 4 x 4 matrix.
+  // Reads the upper three rows of a 4 x 4 matrix.
   std::array<std::array<double, 4>, 3> matrix(const json& value, const std::string& place) const {
     const std::string form =
         "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
@@ -375,12 +375,12 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
   return scene;
 }
 
-// Bytes of meshes that a streamed scene file keeps, since the file may name them again.
+// Meshes up to this total size stay in the cache, since a scene file may name a mesh again.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
                                     const TakePart& take) {
-  std::size_t bytes = 0;  // of the parts since the cache was emptied
+  std::size_t bytes = 0;  // size of the parts since the cache was emptied
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
   Scene names;  // has only the names of all objects
@@ -401,8 +401,8 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// Returns the names of objects. Each is the name of a file without its extension; the folder is
-// added if another file has the same name.
+// Returns the names of objects. Each name is the name of the file without its extension. The folder
+// is added if another file has the same name.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   std::map<std::string, std::set<std::string>> called;  // the paths, by the name without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);

@@ -1,5 +1,5 @@
 // Makes a scene from command-line arguments that name mesh files, a built-in scene or a scene file.
-// stream_scene() gives it part by part, for callers whose memory cannot hold the scene.
+// stream_scene() passes on the scene part by part, for callers whose memory cannot hold it.
 #pragma once
 
 #include <initializer_list>
@@ -10,16 +10,16 @@
 
 namespace farcull {
 
-// Pairs of objects that are not tested against each other. The command line and files give them by
-// names (ignored.cpp).
+// Pairs of objects that are not tested against each other. Options and files name the objects
+// (ignored.cpp).
 
-/// How a name that no object has is treated. After the first frame such names are passed over,
-/// since objects may appear and disappear.
+/// How to treat a name that no object has. After the first frame such names are passed over, since
+/// objects may appear and disappear.
 enum class UnknownName { refused, passed_over };
 
-/// Returns the pairs of an object that the pattern `first` matches and a different object that the
-/// pattern `second` matches. A * in a pattern stands for any characters. Throws Error if
-/// - a pattern is the name of an object, but matches more objects;
+/// Returns all pairs of two different objects of which one matches the pattern `first` and the
+/// other matches the pattern `second`. A * in a pattern stands for any characters. Throws Error if
+/// - a pattern is the name of an object, but also matches other objects;
 /// - a pattern matches no object, unless `lacking` is passed_over;
 /// - both patterns match the same single object, unless `lacking` is passed_over.
 /// Errors name `where` and `line`, and call the pair `what`.
@@ -47,14 +47,14 @@ std::vector<IgnoredNames> read_ignored(const std::string& path);
 std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
                                         const std::optional<std::string>& file);
 
-/// Returns the pairs of an object of the first group and a different object of the second group, as
-/// in_order() gives them. A name may hold colons, so each colon of a text is tried as the one
-/// between the groups. Throws Error naming `where` and the line if a text has no colon, or if
-/// objects match both groups at two of its colons. Throws Error as pairs_between() does.
+/// For each text, returns the pairs of two different objects, one from each group, in the order of
+/// in_order(). A name may hold colons, so each colon of a text is tried as the separator of the
+/// groups. Throws Error naming `where` and the line if a text has no colon, or if several of its
+/// colons separate groups that have objects. Throws Error as pairs_between() does.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
                                         UnknownName lacking = UnknownName::refused);
 
-/// A scene as a command line describes it. Only names are required.
+/// A scene as a command line describes it. Only `names` is required.
 struct SceneArguments {
   SceneArguments() = default;
   SceneArguments(std::vector<std::string> of) : names(std::move(of)) {}
@@ -65,28 +65,27 @@ struct SceneArguments {
   std::optional<std::string> format;  // format of a mesh on standard input; read by named_format()
   std::optional<std::string> ignore;  // read by parse_ignored()
 
-  /// The arguments as words of a command line.
+  /// Returns the arguments as words of a command line.
   std::vector<std::string> words() const;
 };
 
 /// Loads the scene that the arguments name. Their `names` are one of
 /// - one or more mesh files (.obj, .off, .ply or .stl, perhaps with .gz after it). Each file is an
-/// object. It has the name of its file without extension. The folder is added if another file has
-/// the same name;
+///   object, named after the file without extension. The folder is added if another file has the
+///   same name;
 /// - one built-in scene, perhaps with numbers and suffixes (builtin/scenes.h);
 /// - one scene file, JSON (docs/scenes.md).
 /// A mesh that is named several times is read once. If meshes are welded, the name of the scene
-/// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error if
-/// an argument cannot be read or is not of this form. The Error names the file. For a scene file it
-/// adds the line, or the place of a wrong value such as objects[1].rotate.axis.
+/// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error
+/// naming the file if an argument cannot be read or is not of this form. For a scene file, the
+/// Error also names the line, or the place of a wrong value such as objects[1].rotate.axis.
 Scene load_scene(const SceneArguments& arguments);
-/// Throws Error if `weld` or `format` is given, but no named mesh can be affected by it.
+/// Throws Error if `weld` or `format` is given, but applies to no mesh in `names`.
 void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
 /// ignored_objects() does.
 void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking);
-/// Does the same as load_scene() above, but reads meshes through the cache `meshes`, which keeps
-/// them.
+/// Does the same as load_scene(arguments), but keeps the meshes that it reads in `meshes`.
 Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 
 /// True if load_scene() treats the name as that of a scene file.
@@ -95,8 +94,8 @@ bool is_scene_file(const std::string& name);
 /// twice. If the file cannot be read or is no scene file, returns the paths that were found.
 std::vector<std::string> meshes_of_scene_file(const std::string& path);
 
-/// load_scene() for the text of a scene file. `path` is named in errors, and mesh paths are
-/// relative to it.
+/// Does the same as load_scene() for the text of a scene file. path: named in errors; mesh paths
+/// are relative to its folder.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
 struct SceneFileObject {
@@ -107,22 +106,22 @@ struct SceneFileObject {
 std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
                             const std::vector<std::pair<std::string, std::string>>& ignored);
 
-/// Throws Error if `name` is neither a built-in scene for parse_scene_name() nor a file. Accepts
-/// each name with a %, since it stands for the files of several frames (%d).
+/// Throws Error if `name` is neither a file nor a name that parse_scene_name() accepts. Accepts
+/// each name with a %, since such a name may stand for the files of several frames (%d).
 void require_known(const std::string& name);
 
 /// Receives a part of a scene: some consecutive objects, as a valid scene with the name of the
 /// whole scene. The function may change the part.
 using TakePart = std::function<void(Scene& part)>;
 
-/// Calls take() with one part after the other. All parts together have the objects, names,
-/// triangles and doubles of load_scene(arguments), in the same order. Only the indices of vertices
-/// start at 0 in each part. A part is a mesh file, an object of a scene file, or some objects of
-/// the built-in scene `field`; any other built-in scene is a single part. Memory: the largest part
-/// with its file, up to 256 MiB of meshes that a scene file may name again, and the names of
-/// objects. Returns the pairs of objects that the scene file ignores, by their numbers in the whole
-/// scene; the parts have no ignored pairs. Throws Error as load_scene() does, perhaps after some
-/// parts. Passes on what take() throws. Precondition: `ignore` is not given.
+/// Calls take() with one part after the other. Together the parts have the objects, names,
+/// triangles and coordinates of load_scene(arguments), in the same order. Only the indices of
+/// vertices start at 0 in each part. A part is a mesh file, an object of a scene file, or some
+/// objects of the built-in scene `field`; any other built-in scene is a single part. Memory: the
+/// largest part with its file, up to 256 MiB of meshes that a scene file may name again, and the
+/// names of objects. Returns the pairs of objects that the scene file ignores, by their numbers in
+/// the whole scene; the parts have no ignored pairs. Throws Error as load_scene() does, perhaps
+/// after some parts. Passes on exceptions of take(). Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
 
 // Scenes as files (write_scene.cpp): a mesh for each object, and a scene file that names the
@@ -136,11 +135,11 @@ struct WrittenScene {
 };
 
 /// Writes each object as NAME.off, with the vertices that the object uses. Then writes scene.json;
-/// loading it gives a scene with the same scene_hash(). NAME is the object's name, in which
-/// everything but letters, digits, '.' and '-' is replaced. A number is added if two names are
-/// equal. Creates the last part of `folder` if it does not exist; replaces existing files. If the
-/// system refuses a path, removes the new files and throws Error naming the path. Precondition:
-/// every object has a triangle.
+/// loading it gives a scene with the same scene_hash(). NAME is the object's name, with '-' for
+/// everything but letters, digits, '.' and '-'. A number is added if two names are equal. Creates
+/// `folder`, but not its parents, if it does not exist; replaces existing files. If the system
+/// refuses a path, removes the new files and throws Error naming the path. Precondition: every
+/// object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

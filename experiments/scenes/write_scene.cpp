@@ -16,10 +16,10 @@
 namespace farcull {
 namespace {
 
-constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
+constexpr std::size_t kLongestName = 100;  // bytes, well below the limits of file systems
 
 // Writes files to a folder. Unless keep() was called, the destructor removes the files and the
-// folder that are new.
+// folder that this object created.
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -63,7 +63,7 @@ class Folder {
   WrittenScene written_;
 };
 
-// Returns for each object the name of its file without an ending. No two names are equal.
+// Returns for each object the name of its file without extension. No two names are equal.
 std::vector<std::string> file_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -90,7 +90,7 @@ MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
   return parts.take();
 }
 
-// Returns the pairs of ignored objects by name. Throws Error if two names select other pairs.
+// Returns the pairs of ignored objects by name. Throws Error if the names also select other pairs.
 std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const ObjectPair& pair : scene.ignored) {

@@ -1,8 +1,8 @@
-// Studies of missed pairs. "headline" has the methods of the first figure. "accuracy" counts what
-// every method misses at each resolution, and what each form of CULLIDE misses. "error-time" shows
-// misses against time, for methods and libraries. "stability" asks which methods find all
-// collisions in extreme scenes. "cloth" runs every frame of a falling cloth at four stiffnesses,
-// and accounts for every pair of triangles.
+// Studies of missed pairs. "headline" compares methods on two scenes. "accuracy" counts the pairs
+// that each method and each form of CULLIDE misses at each resolution. "error-time" measures the
+// misses and the time of methods and libraries. "stability" tests which methods find all collisions
+// in extreme scenes. "cloth" runs every frame of a cloth at four stiffnesses, and accounts for
+// every pair of triangles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,12 +19,12 @@ using enum Method;
 
 struct ErrorScene {
   std::string name;
-  bool self = false;   // one object is tested against itself, by S-CULLIDE and boxes
+  bool self = false;   // objects are tested against themselves
   bool drawn = false;  // drawn at random
   bool again = false;  // drawn with another seed than the scene's default
 };
 
-// objects: smooth surfaces and scans. drawn: randomly drawn scenes, each of which is used with
+// objects: scenes of smooth surfaces and scans. drawn: randomly drawn scenes; each is used with
 // several seeds.
 std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
                                   const std::vector<std::string>& drawn, bool quick) {
@@ -37,16 +37,17 @@ std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
   return out;
 }
 
-// The triangles of these scenes are small or few. At 4096 px, a software device takes minutes to
-// draw large triangles.
+// Returns scenes whose triangles are small or few. At 4096 px, a software device takes minutes to
+// draw many large triangles.
 std::vector<ErrorScene> accuracy_scenes(bool quick) {
   if (quick) return scenes_of({"two-tori", "mannequin-devil"}, {"needles:60"}, quick);
   return scenes_of({"two-tori", "two-spheres", "two-bunnies", "dragon-bunny", "mannequin-devil"},
                    {"needles:60", "random-soup", "slivers:200:1e6", "field"}, quick);
 }
 
-// The highest resolution for forms of CULLIDE, and for FAR at other radii than the budget's. These
-// have no guarantee, so no view can be skipped, and a run takes up to five times as long.
+// The highest resolution for forms of CULLIDE, for FAR at other radii than the budget's, and for
+// counts of pairs at risk. Such runs have no guarantee, so they skip no view and take up to five
+// times as long.
 constexpr int kMostOfForms = 1024;  // px
 
 // Forms of CULLIDE: the published form, forms with one change, and forms with several changes. A
@@ -90,7 +91,7 @@ void add_forms(const ErrorScene& scene, std::vector<Point>& out) {
 std::vector<Point> accuracy_grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const ErrorScene& scene : accuracy_scenes(choice.quick)) {
-    // S-CULLIDE takes a step per triangle.
+    // The quick grid limits S-CULLIDE to 1024 px, since S-CULLIDE takes a step per triangle.
     const int most = scene.again || (scene.self && choice.quick) ? 1024 : 4096;
     const NamedScene named{scene.name};
     for (int resolution = 64; resolution <= most; resolution *= 2) {
@@ -124,15 +125,15 @@ std::vector<ErrorScene> timed_scenes(bool quick) {
                    {"needles:100", "random-soup", "field"}, quick);
 }
 
-// For the first three libraries, exact tests follow. FCL and ODE use their own tests of triangles.
+// The first three libraries find candidates, and exact predicates decide them. FCL and ODE decide
+// pairs with their own triangle tests.
 constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
                                   "fcl-double", "fcl-float", "ode-trimesh"};
 
-// CULLIDE that ends when a round changes nothing, its published form, and two forms that miss less.
+// Forms of CULLIDE: rounds until nothing changes; the published form; two forms that miss less.
 const std::vector<CullideForm> kForms = {
     {}, kPublishedForm, {.rounds = 1, .conservative = true}, kStrictForm};
 
-// Adds all methods that draw, at one resolution.
 void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution, int repeat) {
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
@@ -197,7 +198,7 @@ std::vector<Point> headline_grid(const GridChoice& choice) {
 
 // ---- "stability" and "cloth" ----
 
-constexpr long kFrames = 500;  // of the cloth
+constexpr long kFrames = 500;  // frames of the cloth's motion
 
 void add_between_objects(std::vector<Point>& out, const PointScene& scene, int resolution) {
   out.insert(out.end(),
@@ -215,8 +216,8 @@ void add_against_itself(std::vector<Point>& out, const PointScene& scene, int re
               plain_point(scene, boxes), plain_point(scene, exact)});
 }
 
-// The values of each family go from a harmless one to an extreme. There are more values where
-// CULLIDE begins to fail. For offset and scale there are more values where floats begin to fail.
+// The values of a family range from harmless to extreme. There are more values near the value at
+// which CULLIDE begins to fail. `offset` and `scale` have more values where floats begin to fail.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;
@@ -305,7 +306,8 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
   return out;
 }
 
-// Returns the value of a note of the simulation. Throws std::logic_error if no note has that name.
+// Returns the simulation's value `name`, such as an energy. Throws std::logic_error if there is
+// none.
 double note(const FrameNotes& notes, const std::string& name) {
   for (const auto& [known, value] : notes.values) {
     if (known == name) return value;

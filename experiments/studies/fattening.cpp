@@ -1,8 +1,8 @@
 // Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
-// bound what a triangle may touch in a pixel. There the CPU counts the pixel centres that proxies
-// cover. "precision" tests the lemmas for each format of the depth buffer and each source of depth.
-// "radius" tests the lemmas for each radius, and counts the pairs that FAR misses in scenes and on
-// randomly placed patches.
+// bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
+// "precision" tests lemmas 1 and 2 (docs/reliability.md) for each format of the depth buffer and
+// each source of depth. "radius" tests both lemmas for each radius, and counts the pairs that FAR
+// misses in scenes and on randomly placed patches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 
 using enum Method;
 
-constexpr int kRepeat = 3 * kRounds;  // as in the study "scaling"
+constexpr int kRepeat = 3 * kRounds;  // nine runs, as in the study "scaling"
 
 std::vector<Point> offsets_grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
@@ -109,9 +109,9 @@ PointResult measure_offsets(const Point& of, MeasurementContext& lab) {
 
 // ---- "precision" and "radius" ----
 
-// The native canvas with a depth buffer of 16-bit fixed point, without run(). The class rounds the
-// nearest or farthest depth. Rounding is monotone, so the result is the nearest or farthest of the
-// rounded depths.
+// The native canvas with a depth buffer of 16-bit fixed point. It has no run(). depths() rounds the
+// nearest or farthest depth of each pixel. Rounding is monotone, so the result equals the nearest
+// or farthest of the rounded depths.
 class CoarseCanvas final : public Canvas {
  public:
   CoarseCanvas(DepthMode mode, const SolidProgram& solid)
@@ -152,18 +152,17 @@ LemmaSettings settings_of(const LemmaPoint& point) {
   return settings;
 }
 
-// Generators of triangles whose depth varies inside a pixel. Triangles of other generators are too
-// small.
+// Generators whose triangles vary in depth inside a pixel. Other generators make smaller triangles.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
 
 std::vector<Point> precision_grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
-  // Each side with its border makes a viewport of a power of two. 2^20 px is the largest depth of a
-  // window (core/view/view.h, fit_window). In a window of depth 2^20 px, a step of a 24-bit buffer
-  // is longer than the chord of the ball at the corner of a pixel. In a window of depth 2^13 px, a
-  // step of a 16-bit buffer is longer than this chord.
+  // Each side plus the border of 4 px is a power of two. 2^20 px is the largest depth of a window
+  // (core/view/view.h, fit_window). At this depth, a step of a 24-bit buffer is longer than the
+  // ball's chord on the view ray through a pixel's corner. At a depth of 2^13 px, a step of a
+  // 16-bit buffer is longer than this chord.
   const std::vector<int> sides = choice.quick ? std::vector{508, 1020} : std::vector{508, 4092};
   const std::vector<double> depths =
       choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p13, 0x1p20};
@@ -184,7 +183,7 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
             out.push_back(point);
           }
         };
-        // 0.9 of the radius shows that the points are hard enough to detect a radius that is too
+        // Violations at 0.9 of the radius show that the points can reveal a radius that is too
         // small.
         const std::vector<RadiusRule> computed = {parse_radius("0.9"), kPublishedRadius,
                                                   kBudgetRadius};
@@ -211,22 +210,22 @@ std::vector<RadiusRule> radii(bool quick) {
     std::ranges::sort(factors);
   }
   std::vector<RadiusRule> out;
-  // Factors are rounded as they are written, so that reading a key gives the same number.
+  // Each factor is read from its text in a key, so that reading a key gives the same number.
   for (const double factor : factors) out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
   return out;
 }
 
 // Rows for pairs. For each number of subpixel bits there is a row with the published radius and the
-// side at which most pairs are missed. Rows for 8 bits vary this: no snapping; the budget radius;
-// 0.9 of the budget radius, which shows how many pairs are at risk; other sides; a stratum of twice
-// the width, which must give the same rate. The last rows have pairs that are drawn anywhere. They
-// have few bits, since with more bits too few of these pairs are missed.
+// side at which most pairs are missed. Further rows with 8 bits change one value: no snapping; the
+// budget radius; 0.9 of the budget radius, which shows how many pairs are at risk; other sides; a
+// stratum of twice the width, which must give the same rate of misses. The last row draws pairs
+// anywhere. It has 3 bits, since with more bits too few pairs drawn anywhere are missed.
 constexpr struct {
   const char* radius;
   double side;  // px
   int bits, widening;
-  std::uint64_t thousands;  // of placements
+  std::uint64_t thousands;  // thousands of placements
 } kPairs[] = {{"published", 0x1p-4, 4, 1, 250},   {"published", 0x1p-6, 6, 1, 250},
               {"published", 0x1p-8, 8, 1, 1000},  {"published", 0x1p-8, 0, 1, 250},
               {"budget", 0x1p-8, 8, 1, 250},      {"0.9", 0x1p-8, 8, 1, 250},
@@ -239,7 +238,7 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; other pairs nearby rarely hide a missed pair
+constexpr double kSmallest = 0x1p-5;  // px; pairs nearby rarely affect whether a pair is culled
 
 // Four series:
 // (1) With 8 subpixel bits, triangles of each size at the published radius, 10^6 placements in
@@ -306,7 +305,7 @@ std::vector<Point> radius_grid(const GridChoice& choice) {
     LemmaPoint point{.generator = generator,
                      .points = choice.quick ? std::uint64_t{400} : 4000,
                      .seed = choice.seed};
-    // The generator's own window has 16 million pixels.
+    // The default window of this generator has 16 million pixels.
     if (choice.quick && generator == "pixel corners at the rim") point.side = 1020;
     for (const auto& [mode, worst] :
          {std::pair(DepthMode::fragment, false), std::pair(DepthMode::fixed, false),

@@ -1,6 +1,7 @@
-// The study "libraries": wrong answers of other libraries, textbook tests and our own methods on a
-// labelled suite. A point is a contestant and a kind of question. experiments/suite/ask.py asks the
-// contestant's program (docs/ask.md) and counts its errors. This file turns the counts into a row.
+// The study "libraries" counts wrong answers of other libraries, textbook tests and our own methods
+// on a labelled suite. A point is a contestant and a kind of question. experiments/suite/ask.py
+// sends the questions to the contestant's program (docs/ask.md) and counts errors. This file turns
+// the counts into a row.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -121,7 +122,7 @@ Json ask_program(const std::string& command, const std::vector<std::string>& opt
   return out;
 }
 
-/// Returns the points of the study. Points of one question stand together.
+/// Returns the points of the study. The points of one kind of question are adjacent.
 std::vector<Point> grid(const GridChoice& choice) {
   LibraryPoint point{.small = choice.quick, .seed = choice.seed, .suite = choice.suite};
   if (!choice.suite.empty()) point.suite_name = read_suite(choice.suite).sum.substr(0, 8);
@@ -140,8 +141,8 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-/// Returns the folder of the point's suite. If the point names none, this is the folder in the
-/// variable FARCULL_MADE_SUITE; the suite is made there unless it exists already.
+/// Returns the folder of the point's suite: point.suite, or if that is empty, the folder in the
+/// environment variable FARCULL_MADE_SUITE. Makes the suite in that folder unless it exists.
 std::string folder_of(const LibraryPoint& point) {
   if (!point.suite.empty()) return point.suite;
   const char* const named = std::getenv("FARCULL_MADE_SUITE");
@@ -200,7 +201,7 @@ PointResult measure(const Point& at, MeasurementContext& lab) {
   const Asked& asked = ask_card(point.contestant);
   if (!asked.missing.empty()) return {.device = "none", .left_out = asked.missing};
   const bool longer = !point.small && point.question != "pair" && point.question != "distance";
-  // Contestants that are methods of farcull read the variable.
+  // Contestants that are methods of farcull read FARCULL_CONTEST_DEVICE.
   const std::string command = "env FARCULL_CONTEST_DEVICE=" + lab.device() + " " + asked.command;
   const Json found =
       ask_program(command, {"--suite", folder_of(point), "--only", point.question, "--limit",

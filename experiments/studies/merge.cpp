@@ -1,5 +1,5 @@
-// Refuses rows that do not fit together in one store, such as rows with two versions of a library.
-// Reads shards and joins them to one store.
+// Joins the stores of shards to one store. Refuses rows that do not fit together in one store, such
+// as rows with two versions of a library.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -118,8 +118,8 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// If several studies have rows of one point, different shards may have timed them. So all rows of
-// the point get the times of its first row.
+// Gives all rows of a point the times of its first row. The rows may differ in times, since several
+// studies may have the point, in shards that were timed separately.
 void share_times(std::vector<Source>& sources) {
   std::map<PointKey, nlohmann::ordered_json> times;
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
@@ -211,7 +211,7 @@ std::vector<std::string> shard_files(const std::string& folder) {
 }
 
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out) {
-  // SQLite would take an old journal for the journal of the new file.
+  // SQLite would use an old journal as the journal of the new file.
   for (const char* beside : {"", "-journal", "-wal"}) {
     if (fs::exists(fs::symlink_status(out + beside)))
       throw Error(out + beside, "is there already", "move it away, or name another file with -o");

@@ -1,6 +1,6 @@
 // The study "model" compares the misses of runs with the misses that the model of docs/misses.md
-// predicts. In a run, the grid of pixels has one position behind the scene. The model averages over
-// all positions. So each point is run at several random positions of the grid.
+// predicts. In a run, the pixel grid has one position relative to the scene. The model averages
+// over all positions. So each point is run at several random positions of the grid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace farcull {
 namespace {
 
 constexpr int kPositions = 4;
-constexpr int kMostFarResolution = 256;  // px; above it FAR takes minutes and misses little
+constexpr int kMostFarResolution = 256;  // px; with more, FAR takes minutes and misses little
 
 // Moves the pixel grid of each view by up to a pixel along both axes. Windows are centred on the
-// places where objects may meet, so the function adds such a place: two objects of one tiny
-// triangle, whose boxes overlap. It lies up to two pixels beyond the lower corner of all other
-// places.
+// places where objects may meet, so the function adds such a place: two objects, each a tiny
+// triangle, whose boxes overlap. The new place lies up to two pixels beyond the lower corner of all
+// other places.
 Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution,
                       shapes::Random& random) {
   Box all = Box::empty();

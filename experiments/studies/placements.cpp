@@ -1,6 +1,6 @@
-// Patches grow over shared vertices from a random triangle. Each placement has a cell. Cell (i, j)
-// of n x n cells is at (i, j, i + j modulo n), so no two cells overlap in any of the three axis
-// views.
+// Places patches of triangles. A patch grows from a random triangle over shared vertices. Each
+// placement has a cell. Cell (i, j) of n x n cells is at (i, j, i + j modulo n), so no two cells
+// overlap in any of the three axis views.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ namespace {
 using shapes::Corners;
 using shapes::Random;
 
-/// The native canvas as a device that snaps. It rounds corners of proxies to the nearest multiple
-/// of 2^-bits px, as assumption A2 allows (docs/reliability.md).
+/// The native canvas, with the corners of proxies first rounded to multiples of 2^-bits px. A
+/// device may snap corners so (assumption A2, docs/reliability.md).
 class SnappingCanvas final : public Canvas {
  public:
   SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
@@ -68,7 +68,8 @@ double longest(const Corners& c) {
   return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
 }
 
-// Centres a patch, and scales it so that the mean of the longest sides is `side`.
+// Centres a patch at the origin. Scales it so that its triangles' longest sides have the mean
+// `side`.
 void fit(std::vector<Corners>& patch, double side) {
   Vec3 middle = Vec3::Zero();
   double sum = 0;
@@ -80,8 +81,8 @@ void fit(std::vector<Corners>& patch, double side) {
   each_point(patch, [&](Vec3& p) { p = (p - middle) * scale; });
 }
 
-// Rotates by a unit quaternion of four random numbers. It uses no sines, so the result is the same
-// on every machine.
+// Rotates a patch by a random unit quaternion. Uses no sines, so the result is the same on every
+// machine.
 void turn(std::vector<Corners>& patch, Random& random) {
   Eigen::Quaterniond q;
   do {
@@ -94,9 +95,9 @@ void turn(std::vector<Corners>& patch, Random& random) {
 }
 
 // Cuts a patch of `count` triangles from an object: a random triangle and the triangles nearest to
-// it over shared vertices. If these are too few (soups have no neighbours), other triangles are
-// drawn at random and moved beside the first triangle. The patch is scaled to `side` and turned at
-// random. around: for each vertex, the object's triangles at this vertex.
+// it over shared vertices. If these are too few, adds random triangles beside the first one (a soup
+// shares no vertices). The patch is scaled to `side` and turned at random. around: for each vertex,
+// the object's triangles at this vertex.
 std::vector<Corners> cut(const Scene& scene, const Object& object,
                          const std::vector<std::vector<std::uint32_t>>& around, Random& random,
                          std::uint32_t count, double side) {
@@ -148,9 +149,9 @@ Vec3 cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random&
   return to;
 }
 
-// Turns a triangle about an axis. The longest edge of the triangle's image gets a random direction,
-// whose angle with a diagonal of the pixels has at least this cosine. The triangle's rectangle is
-// drawn along this edge (offsets/fit.inl). Like turn(), the function uses no sines.
+// Turns a triangle about an axis, so that the longest edge of its image gets a random direction
+// near a diagonal of the pixels. cosine: the least cosine of the angle between edge and diagonal.
+// The triangle's rectangle is drawn along this edge (offsets/fit.inl). Uses no sines, like turn().
 void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random) {
   const int right = (axis + 1) % 3, up = (axis + 2) % 3;
   double x = 0, y = 0, length = 0;
@@ -177,8 +178,8 @@ void turn_to_diagonal(Corners& corners, int axis, double cosine, Random& random)
 }
 
 // Reflects and moves the second patch, so that its corner farthest from its middle pokes through a
-// triangle of the first patch. The depth is a random fraction, 2^-20 to 1, of the smaller of 1 px
-// and that triangle's longest side.
+// triangle of the first patch. The corner's depth is a random fraction, 2^-20 to 1, of the smaller
+// of 1 px and that triangle's longest side.
 void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Corners& face = one[random.below(one.size())];
   Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -223,25 +224,25 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
 
 // 1. Let n be the unit normal of an edge, at the angle t from a diagonal. Snapping to multiples
 //    of g moves the edge inward by at most g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
-// 2. Let the contact be at q, seen from the nearest corner of the pixels. A triangle's rectangle
+// 2. Let q be the contact relative to the nearest corner of the pixels. A triangle's rectangle
 //    reaches at least sqrt(1/2) beyond the contact. So the rectangle loses the pixel centre on this
 //    diagonal only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
 // 3. A pair is missed only if each of the four centres around the corner is lost by one of the two
 //    triangles. Suppose that each triangle loses two opposite centres. Then step 2 holds for n and
 //    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. All such pairs of
-//    strips lie in |q.x| + |q.y| < px, where px is the largest value with
-//    px (cos(t) - sin(t)) = (1 + g) cos(t) - 1 for some t.
-// 4. If the triangles lose the centres in another way, the sum of their two bounds is positive.
-// Then an angle is at most sqrt(2) times as large. From 8 bits on, px is at most 1.4 times as
-// large. Such misses are in the stratum of twice the width. The rates of the two strata show how
-// many such misses there are.
+//    strips lie in |q.x| + |q.y| < c. Here c (corner_px) is the largest value with
+//    c (cos(t) - sin(t)) = (1 + g) cos(t) - 1 for some t.
+// 4. If the triangles lose the centres in another way, the sum of their two bounds in step 2 is
+//    positive. Then each angle t is at most sqrt(2) times as large as in step 3. From 8 bits on,
+//    c is at most 1.4 times as large. Such misses are in the stratum of twice the width. The
+//    rates of the two strata show how many such misses there are.
 // 5. One triangle alone does not lose all four centres, to first order in g. Even after snapping,
-// two corners of its rectangle are at least 2 px apart in x, and the other two corners in y. If the
-// triangle lost all four centres, the sum of the four conditions would make one of these distances
-// less than 2 px.
+//    two corners of its rectangle are at least 2 px apart in x, and the other two corners in y. If
+//    the triangle lost all four centres, the sum of the four conditions of step 2 would make one of
+//    these distances less than 2 px.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution) {
-  // Without snapping, only floats round. At the edge of the window they are multiples of 2^-25 of
-  // the window's side.
+  // Without snapping, corners are only rounded to floats. At the edge of the window, floats are
+  // multiples of 2^-25 of the window's side.
   const double grid =
       subpixel_bits > 0 ? std::ldexp(1.0, -subpixel_bits) : std::ldexp(resolution, -25);
   const double reach = 0.5 * (1 + grid);
@@ -266,7 +267,7 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
-    do {  // repeats if a patch leaves its cell, where it would meet other patches
+    do {  // repeats while a patch leaves its cell, where it could meet other patches
       a = cut(from_, from_.objects[0], around_[0], random, count, point.side);
       b = cut(from_, from_.objects[1], around_[1], random, count, point.side);
       if (point.grazing) {
@@ -295,8 +296,8 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     ++out.placements;
   }
   if (point.pairs) {
-    // Two points that touch at each end make the window range from -half to half. So corners of
-    // pixels are at whole numbers.
+    // At each end of the window, a point of either object makes the window range from -half to
+    // half. So corners of pixels are at whole numbers.
     for (const double end : {-half, half}) {
       for (auto* list : {&one, &other})
         list->push_back({Vec3::Constant(end), Vec3::Constant(end), Vec3::Constant(end)});
@@ -384,7 +385,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     const auto& work = std::get<DrawPlan>(planned.work);
     CullSettings settings = work.settings;
     std::vector<std::uint8_t> kept(scene.triangles.size(), 0);
-    double pixel = 1;  // in units
+    double pixel = 1;  // size, in units of the scene
     if (!work.fatteners.empty()) {
       settings.fattener = work.fatteners.front();
       SnappingCanvas canvas(settings.fattener, point.subpixel_bits, lab.session().threads());

@@ -1,4 +1,4 @@
-// Converts points to the columns of a store, and to words.
+// Converts points to the columns of a store, and to text.
 #include "experiments/studies/point.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 namespace farcull {
 namespace {
 
-// The words of a column, in the order of the enumerators of its type.
+// The texts of a column's values, in the order of the enumerators.
 constexpr std::array kDepthFormats = {"float32", "fixed24"};
 constexpr std::array kDepthModes = {"fragment", "fixed"};
 

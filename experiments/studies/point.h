@@ -40,18 +40,17 @@ struct ClusteredScene {
   std::uint64_t seed = 1;
 };
 
-/// Contacts of a family in which one number goes to an extreme (contact_cells() in
-/// contact_cells.cpp).
+/// A scene of contacts that depend on one number (contact_cells() in run_point.cpp).
 struct ContactCells {
   std::string family;  // slivers, mixed, edge-on, overlap, gap, stack, offset or scale
   int side = 24;       // cells in a row; there are side * side cells
-  std::string value;   // the number that goes to an extreme, such as 1e6
+  std::string value;   // the number, from harmless to extreme, such as 1e6
 };
 
 using PointScene =
     std::variant<NamedScene, MotionFrame, ClothApart, PixelCorners, ClusteredScene, ContactCells>;
 
-/// Options that choose the form of a method that draws, as in RunOptions.
+/// The form of a method that draws. The fields are as in RunOptions.
 struct CullideForm {
   int rounds = 0;
   ClearRule clear = ClearRule::any;
@@ -69,18 +68,18 @@ struct RunPoint {
   std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores a depth
   int resolution = 0;  // px; 0: the method has none, or mean_pixels chooses it
-  /// If not 0, the resolution is the least one at which triangles that can take part cover this
-  /// many pixels on average (size_for() in run_point.cpp).
+  /// If not 0: the lowest resolution is chosen at which triangles that may collide cover this many
+  /// pixels on average (size_for() in run_point.cpp).
   double mean_pixels = 0;
   CullideForm form = {};
-  int repeat = 1;  // see runs_of(); 1 for a MotionFrame
+  int repeat = 1;  // number of timed runs (runs_of()); 1 for a MotionFrame
 };
 
-/// A library in place of a method (peers/peer.h).
+/// A run of a library in place of a method (peers/peer.h).
 struct PeerPoint {
   PointScene scene;
   std::string peer;
-  int repeat = 1;  // see runs_of()
+  int repeat = 1;  // number of timed runs (runs_of())
 };
 
 /// The lemma experiment (lemma/lemma.h) with one generator at one radius.
@@ -88,19 +87,19 @@ struct LemmaPoint {
   std::string generator;     // one of lemma_generators()
   std::uint64_t points = 0;  // at least this many points are tested
   double depth = 256;        // depth of the window, px
-  bool worst = false;  // true: drawn on verify/worst_canvas.h, which displaces things as far as
-                       // rounding in double may; false: drawn on the device of the run
+  bool worst = false;  // true: on WorstCanvas (verify/worst_canvas.h), with corners displaced by
+                       // the largest error of double arithmetic; false: on the device of the run
   RadiusRule radius = {};
   DepthMode depth_mode = DepthMode::fragment;  // fixed: boxes are drawn as surfaces
-  /// The samples are depths as a buffer of this format stores them. Empty: as the shader computes
-  /// them, or with fixed depth, as the device's buffer stores them.
+  /// The samples are depths as a buffer of this format stores them. Empty: depths as the shader
+  /// computes them; with fixed depth, depths as the device's buffer stores them.
   std::optional<DepthFormat> depth_format = {};
   bool coarse = false;  // the samples are depths as a buffer of 16-bit fixed point stores them
   int side = 0;         // side of the window, px; 0: the generator chooses it
   std::uint64_t seed = 1;
 };
 
-/// FAR on many small patches of triangles that are placed into each other at random (run_point.h).
+/// FAR on many pairs of small patches of triangles that meet at random places (run_point.h).
 struct PlacementPoint {
   std::string from;      // built-in scene; patches are cut from its first two objects
   bool grazing = false;  // a corner of one patch pokes through the other; false: patches cross
@@ -124,24 +123,24 @@ struct LibraryPoint {
   bool small = false;             // true: of the small suite; false: of the full suite
   std::uint64_t seed = 1;         // of the suite
   std::string suite = {};         // folder of the suite; empty: a suite is generated
-  std::string suite_name = {};    // only with a folder: the beginning of the suite's checksum
+  std::string suite_name = {};    // the beginning of the checksum of the suite in a folder
 };
 
-/// The potential neighbours that a method leaves (measure/neighbour_sets.h).
+/// A method that finds potential neighbours (measure/neighbour_sets.h).
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 0;   // of the diagram, in cells; 0: the method has no diagram
-  double widening = 1;  // of the reliable diagram; below 1 there is no guarantee
-  int repeat = 1;       // see runs_of()
+  double widening = 1;  // factor of the reliable diagram; below 1 there is no guarantee
+  int repeat = 1;       // number of timed runs (runs_of())
 };
 
-/// The distances of a scene, by farcull or by a library (peers/peer.h).
+/// The distances of a scene, computed by farcull or by a library (peers/peer.h).
 struct DistancePoint {
   PointScene scene;
   std::string contestant;  // "farcull", or the name of a peer
   DistanceTask task = DistanceTask::nearest;
-  int repeat = 1;  // see runs_of()
+  int repeat = 1;  // number of timed runs (runs_of())
 };
 
 using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint,

@@ -1,5 +1,5 @@
 // Makes and opens the scenes of points, runs methods and libraries on them, and compares each run
-// with the truth.
+// with the exact answer.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -99,19 +99,19 @@ Scene clusters(const ClusteredScene& wanted) {
   return scene.finish();
 }
 
-// The scene of ContactCells: a family of contacts that depend on a number, which goes from a
-// harmless value to an extreme. Cell (i, j) lies at (i, j, i + j modulo side), so that in each of
-// the views x, y and z every cell has pixels of its own. A unit is a pixel, and corners of pixels
-// are at whole numbers in all three views. Of every six cells
-// - one has a contact at risk, which does not depend on the number. In the view along one axis the
-// images of its triangles are segments at 45 degrees that cross at the corner of a pixel. Every
-// pixel centre is at least 0.707 px, half a pixel's diagonal, from one of the two segments. So only
-// a ball of at least 0.707 px finds such a contact; the budget has 0.709 px;
-// - two have a contact that depends on the number. The contact lies at most 15/64 px from the
+// The scene of ContactCells: contacts that depend on a number, from a harmless value to an extreme.
+// Cell (i, j) lies at (i, j, i + j modulo side), so that in each of the views x, y and z every cell
+// has pixels of its own. A unit is a pixel, and corners of pixels are at whole numbers in all three
+// views. Every six consecutive cells are
+// - one cell whose contact is at risk and does not depend on the number. In the view along one
+// axis, the images of its triangles are segments at 45 degrees that cross at the corner of a pixel.
+// Every pixel centre is at least 0.707 px, half a pixel's diagonal, from one of the two segments.
+// So only a ball of at least 0.707 px finds such a contact. The radius of the budget is 0.709 px;
+// - two cells whose contact depends on the number. The contact lies at most 15/64 px from the
 // centre of a pixel along each axis, so that much smaller balls find it at every value;
-// - three have triangles that are far apart, so that there is something to cull.
+// - three cells whose triangles are far apart, so that there is something to cull.
 
-constexpr double kCell = 20;      // px, of a cell along each axis
+constexpr double kCell = 20;      // px, side of a cell
 constexpr double kUlp = 0x1p-45;  // px, the last bit of coordinates of 128 to 256
 
 // Returns the triangles of a contact at risk, at the origin. Their images in the view z are
@@ -121,9 +121,9 @@ std::vector<Corners> at_risk(double slope) {
   return {{-up - depth, up - depth, depth}, {depth - down, depth + down, -depth}};
 }
 
-// Returns the triangles of a contact that depends on the number, about the origin: one for each
+// Returns the triangles of a contact near the origin that depends on the number: one for each
 // object. With harmless values each triangle is about 11 px long. The two triangles cross along a
-// line; each view has room for the centre of a pixel on both sides of this line.
+// line. Each view has room for a pixel centre on both sides of this line.
 std::vector<Corners> varying(const std::string& family, double value) {
   const auto sheet = [](const Vec3& along, const Vec3& across, double aspect) {
     const Vec3 u = 2.25 * along, v = 2.5 / aspect * across;
@@ -219,9 +219,9 @@ PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& 
 // A point is left out if its mean_pixels requires a higher resolution than this.
 constexpr int kMostSizedResolution = 8192;  // px
 
-// Returns the least resolution at which triangles that can take part cover `pixels` pixels on
-// average, over the triangles and the views x, y, z. A triangle covers as many pixels as its image
-// has area. Returns resolution 0 if the triangles have no area.
+// Returns the lowest resolution at which triangles that may collide cover `pixels` pixels on
+// average, over the triangles and the views x, y, z. A triangle covers as many pixels as the area
+// of its image. Returns resolution 0 if the triangles have no area.
 SizeCounts size_for(const Scene& scene, double pixels) {
   constexpr int kSample = 256;  // px; areas grow with the square of the resolution
   const Regions regions = find_regions(scene, {.self = has_self(scene)});

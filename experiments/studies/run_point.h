@@ -16,13 +16,13 @@ namespace farcull {
 /// and FrameSource do.
 const Scene& open_scene(const PointScene& scene, MeasurementContext& lab);
 
-/// Returns the options of a run at the point. The run has no accounting, since it is compared with
-/// the truth.
+/// Returns the options of a run at the point. The run has no accounting, since measure_run()
+/// compares it with the exact answer.
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
-/// Returns a scene of cells, described in run_point.cpp. A cell has a pair of triangles. In the
-/// views x, y and z at kCellsResolution each cell has pixels of its own. Throws std::logic_error
-/// for an unknown family.
+/// Returns a scene of cells, described in run_point.cpp. A cell has a few triangles. In the views
+/// x, y and z at kCellsResolution each cell has pixels of its own. Throws std::logic_error for an
+/// unknown family.
 constexpr int kCellsResolution = 512;  // px
 Scene contact_cells(const ContactCells& scene);
 /// True if a colliding pair of this scene is in a cell whose contact depends on
@@ -32,16 +32,15 @@ bool varies(const TrianglePair& pair, const ContactCells& scene);
 /// Returns RunCounts::left_by_boxes and RunCounts::views_used.
 std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const Record& record);
 
-/// The name of the device that answered: PointResult::device.
+/// Returns the device of the run, as in PointResult::device.
 std::string answered(const Record& record);
 
 /// Opens the scene and runs the point's method on it once. A run does not depend on earlier runs in
-/// `lab`, so i-collide starts without sorted lists. On a MotionFrame, however, i-collide keeps the
-/// lists of the previous frame, as it is meant to. A second run of that frame would find sorted
-/// lists, so `repeat` must be 1 there (else std::logic_error). Throws Error as run() does. The
-/// counts are RunCounts without `fragments`. record: receives the run; may be null.
+/// `lab`, so I-COLLIDE starts without sorted lists. A MotionFrame is an exception: I-COLLIDE uses
+/// the lists of the previous frame. A second run of the same frame would use this frame's own
+/// lists, so `repeat` must be 1 for a MotionFrame (else std::logic_error). Throws Error as run()
+/// does. The counts are RunCounts without `fragments`. record: receives the run; may be null.
 PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* record = nullptr);
-/// Calls measure_run() for a Point that is a RunPoint.
 inline PointResult measure_run_point(const Point& point, MeasurementContext& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
 }
@@ -69,57 +68,57 @@ std::string library_of_peer(const Point& point);
 /// difference with both values.
 void require_same(const PointKey& point, const PointResult& first, const PointResult& other);
 
-/// Runs the generator of the point. The point is left out if the window is larger than the device
-/// can draw. The counts are LemmaCounts. Throws Error for faults of the device.
+/// Runs the lemma experiment of the point. The point is left out if the window is larger than the
+/// device can draw. The counts are LemmaCounts. Throws Error for faults of the device.
 PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab);
 
 // Potential neighbours and distances of the study "proximity". The exact answers of a scene are
-// those of `farcull distance`. They count only if the accounting (verify/distance_accounting.h),
-// which shares no code with the search, has decided every pair of triangles and found no nearer
-// pair.
+// those of `farcull distance`. They are used only after the accounting
+// (verify/distance_accounting.h) decided every pair of triangles and found no nearer pair. The
+// accounting shares no code with the search.
 
 /// Runs the method once on one thread. The counts are SetCounts. The point is left out if the
 /// diagram would keep too many pairs. Throws Error if the accounting refutes the exact answers.
 PointResult measure_neighbours(const NeighbourPoint& point, MeasurementContext& lab);
 
-/// Asks the point's contestant once for the distances, on one thread. The counts are
+/// Computes the distances once with the point's contestant, on one thread. The counts are
 /// DistanceCounts. The point is left out if this build lacks the library or the library refuses the
 /// scene. Throws std::logic_error if there is no such contestant.
 PointResult measure_distances(const DistancePoint& point, MeasurementContext& lab);
-/// Asks `contestant` in place of the contestant that the point names.
+/// Uses `contestant` in place of the contestant that the point names.
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
                               MeasurementContext& lab);
 
-/// "farcull" and all peers, including those that this build lacks.
+/// Returns "farcull" and all peers, including those that this build lacks.
 std::vector<DistancePeer> distance_contestants();
-/// The library of a DistancePoint with its version (Study::library).
+/// Returns the library of a DistancePoint with its version (Study::library).
 std::string library_of_distances(const Point& point);
 
-/// Counts if each view of a run of FAR draws every triangle that takes part once.
+/// Fragments of a run of FAR whose views draw each triangle that may collide exactly once.
 struct Fragments {
   std::uint64_t covered = 0;  // pixel centres in the closed proxies; each runs the fragment program
-  std::uint64_t solid = 0;    // covered pixel centres whose line along the depth meets the solid
+  std::uint64_t solid = 0;    // covered pixel centres whose view ray meets the solid
   std::uint64_t elements = 0;  // proxies drawn
 };
 
-/// Counts on the CPU, with the record's views and radii and the function that the shaders run
-/// (SolidProgram::interval). So the device changes the counts only through its error budget.
-/// Ignores that a rasterizer snaps corners, which matters only for pixel centres very near a
-/// proxy's edge. offset: obb or exact, the offset to count. Precondition: `record` is of a run of
-/// `far` with fragment depth on this scene.
+/// Counts fragments on the CPU, with the record's views and radii and the function that the shaders
+/// run (SolidProgram::interval). So the counts depend on the device only through its error budget.
+/// Snapping of corners is ignored; it matters only for pixel centres very near a proxy's edge.
+/// offset: obb or exact, the offset to count. Precondition: `record` is of a run of `far` with
+/// fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
-// Measures how often FAR misses a pair at a radius, on many small patches of triangles that are
-// placed into each other at random. A patch is a few neighbouring triangles of a built-in scene,
-// scaled and turned at random. A scene holds thousands of placements. In each of the views x, y and
-// z every placement has pixels of its own, so that one run of FAR decides them all.
+// Measures how often FAR misses a pair at a radius, on many pairs of small patches that meet at
+// random places. A patch is a few neighbouring triangles of a built-in scene, scaled and turned at
+// random. A scene holds thousands of placements. In each of the views x, y and z every placement
+// has pixels of its own, so that one run of FAR decides them all.
 
 constexpr std::uint32_t kPatchTriangles = 8;
 
 /// The placements of one scene. Its first object has the first patch of each placement, and its
 /// second object the second patch, in the order of the placements. A patch has kPatchTriangles
-/// triangles, and a unit is about a pixel. If placements are pairs, a patch is one triangle, a unit
-/// is exactly a pixel, and two points at the ends fix the window.
+/// triangles, and a unit is about a pixel. If PlacementPoint::pairs is set, a patch is one
+/// triangle, a unit is exactly a pixel, and points at two corners fix the window.
 struct PlacedPatches {
   Scene scene;
   std::uint64_t placements = 0;
@@ -149,10 +148,10 @@ class PatchSource {
 /// resolution or in the kind of contact have different seeds, so that their rows can be added up.
 std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window);
 
-/// The length of the longest segment in which two triangles meet, in double; 0 if there is none.
+/// Returns the length of the segment in which two triangles meet, in double; 0 if there is none.
 double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Runs FAR on one scene after the other until all placements of the point are done. FAR has
+/// Runs FAR on one scene after the other until all placements of the point are done. FAR uses
 /// oriented boxes, fragment depth and the views x, y, z, on the native canvas. With subpixel bits,
 /// corners of proxies are snapped to multiples of 2^-bits px before drawing, as devices do. Without
 /// subpixel bits, pairs are drawn on the device of the run instead. Exact predicates decide which

@@ -207,7 +207,6 @@ class Runner {
   }
 
  private:
-  // A point of a task.
   struct At {
     Task* task;
     std::size_t position;
@@ -235,7 +234,7 @@ class Runner {
     return !closed_.contains({&task, position}) && rounds_of(task, position) <= round;
   }
 
-  // Collects results of the store, which other studies can use for the same points.
+  // Collects the results in the store that other studies can use for the same points.
   void find_known() {
     std::set<std::int64_t> alike;
     for (const auto& [run, then] : store_.runs()) {
@@ -263,7 +262,7 @@ class Runner {
       counted_.try_emplace(key, Measurement{.counts = row.counts, .device = row.device});
     }
   }
-  // Returns the counts that a plain study has of the point, or null.
+  // Returns the counts of the point in another study that is `plain`, or null.
   const Measurement* counted(const At& at) const {
     if (!at.task->study->plain || !std::holds_alternative<RunPoint>(at.point())) return nullptr;
     const auto known = counted_.find(at.key());
@@ -295,8 +294,8 @@ class Runner {
     }
   }
 
-  // Returns the row of the point if there is one. Otherwise returns a row with the counts that
-  // another study has of the point, or with the counts of a run now. Empty if that run failed.
+  // Returns the point's row if there is one. Otherwise returns a row with the counts of the point
+  // in another study, or measures the counts now. Empty if this measurement failed.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;
@@ -359,7 +358,6 @@ class Runner {
     if (!runs.first) runs.first = std::move(result);
   }
 
-  // Measures a point without times.
   void count_point(Task& task, std::size_t position) {
     const At at{&task, position};
     const Stopwatch watch;
@@ -401,7 +399,7 @@ class Runner {
     if (progress_) progress_(now_);
   }
 
-  // Measures a point. Returns nothing if measuring failed or gave another answer than an earlier
+  // Measures a point. Returns nothing if measuring failed or the result differs from an earlier
   // run. Then the failure is noted, the point is not measured again, and the next point gets a new
   // device.
   std::optional<PointResult> measure(const At& at) {

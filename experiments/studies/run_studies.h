@@ -18,13 +18,12 @@ namespace farcull {
 // not tell them apart.
 
 /// Throws Error if stored rows of a contestant or peer name another version of its library than the
-/// present one. Checks only contestants and peers of points that are to be measured; `open` has the
-/// positions of these points in the grid. A contestant that is missing now adds no rows, so its old
-/// rows stay. The error names the store at `path`, and each such contestant with both versions.
+/// present version. Checks only contestants and peers of points that are to be measured; `open` has
+/// the positions of these points in the grid. A contestant that is missing now adds no rows, so its
+/// old rows stay. The error names the store at `path`, and each such contestant with both versions.
 void require_same_versions(const std::string& path, const StoredStudy& stored, const Study& study,
                            const std::vector<Point>& points, const std::vector<std::size_t>& open);
 
-/// A study in one file.
 struct StudyOfFile {
   std::string path;
   const StoredStudy* stored = nullptr;
@@ -38,13 +37,13 @@ std::vector<std::string> shard_files(const std::string& folder);
 
 struct MergeSummary {
   std::size_t files = 0, studies = 0, rows = 0;
-  std::size_t machines = 0;  // with different device, driver, CPU or CPU features
+  std::size_t machines = 0;  // that differ in device, driver, CPU or CPU features
 };
 
 /// Writes the store `out` with the rows of all files. `out` appears only when it is complete.
 /// Throws Error naming the file if
 /// - a file is no store of farcull;
-/// - its studies, grids, seeds or commit are not those of the first file;
+/// - the file's studies, grids, seeds or commit are not those of the first file;
 /// - two files hold the same shard or the same point;
 /// - a shard is in no file, or a point has a row in no file;
 /// - rows have two versions of one library (require_one_version());
@@ -54,13 +53,13 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
 struct Shard {
   int index = 1, of = 1;  // 1 <= index <= of
 
-  /// Takes every of-th point, so that each shard gets both cheap and costly ones.
+  /// True for every of-th position, so that each shard gets both cheap and costly points.
   bool holds(std::size_t position) const {
     return position % static_cast<std::size_t>(of) == static_cast<std::size_t>(index - 1);
   }
 };
 
-/// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
+/// Reads "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
 /// If other programs take a larger share of the processors than this, the times of a round are
@@ -80,23 +79,22 @@ struct StudiesRequest {
   std::string lock = TimingLock::kFile;  // tests use another file
 };
 
-/// The progress of a run.
 struct StudiesProgress {
   std::string study;
-  std::string point;                  // in words
-  std::string stage;                  // of the point's run
+  std::string point;                  // the current point, in words
+  std::string stage;                  // stage of the point's run
   std::size_t done = 0, points = 0;   // points of this shard in all studies
   std::optional<double> remaining_s;  // an estimate; empty until a point was measured
 };
 
 struct StudySummary {
   std::string study;
-  std::size_t points = 0;       // of this shard
-  std::size_t before = 0;       // fully measured before this run
-  std::size_t measured = 0;     // in this run, including left-out points
+  std::size_t points = 0;       // the study's points in this shard
+  std::size_t before = 0;       // points fully measured before this run
+  std::size_t measured = 0;     // points of this run, including left-out ones
   std::size_t left_out = 0;     // old and new rows that say why nothing was measured
   std::size_t void_rounds = 0;  // rounds under too much load, in old and new rows
-  double seconds = 0;           // of this run
+  double seconds = 0;           // time of this run
 };
 
 struct StudiesSummary {
@@ -110,8 +108,8 @@ struct StudiesSummary {
 };
 
 /// Measures each point that has no row in the store, whose row has a reason in place of a result,
-/// or whose row lacks rounds or has void rounds. If another study of the store measured the times
-/// of a point, copies its times. Copies its counts if both studies are `plain`.
+/// or whose row lacks rounds or has void rounds. If another study of the store has timed the same
+/// point, copies the times; if both studies are `plain`, also copies the counts.
 ///
 /// Holds the TimingLock while points are timed. If a point fails, its error is noted, and the next
 /// point gets a new device. A signal ends the program, with a line that says how many points are
@@ -121,7 +119,8 @@ struct StudiesSummary {
 /// - the folder cannot be created, or Store or Store::declare() refuses the store;
 /// - another process measures times;
 /// - the store has rows of a study, and `resume` is not set;
-/// - it has rows of another commit of farcull, another device, other CPU features, or another
+/// - the store has rows of another commit of farcull, another device, other CPU features, or
+/// another
 ///   version of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});

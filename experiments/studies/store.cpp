@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A member with fields is replaced by its fields; an empty optional is left out.
+// Adds a count. A value with fields is replaced by its fields. An empty optional is left out.
 template <class Value>
 void add(NamedCounts& out, std::string_view name, const Value& value) {
   if constexpr (requires { value.has_value(); }) {
@@ -65,7 +65,6 @@ Error damaged(const std::string& path, const std::string& what) {
                "restore it from a copy, or start anew in another folder");
 }
 
-// Turns an error of SQLite into an Error with a remedy.
 Error refusal(const std::string& path, const SQLite::Exception& error) {
   const std::string text = error.getErrorStr();
   switch (error.getErrorCode() & 0xff) {
@@ -120,7 +119,7 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Binds the fields of a row from the parameter `at` on, in the order of the columns of its table.
+// Binds the fields of a row, in the order of its table's columns, starting at parameter `at`.
 template <class Fields>
 void bind_fields(SQLite::Statement& statement, int at, const Fields& row) {
   row.fields([&](std::string_view name, const auto& value) {
@@ -136,7 +135,7 @@ void bind_fields(SQLite::Statement& statement, int at, const Fields& row) {
   });
 }
 
-// Reads the fields of a row from the column `at` of the statement on.
+// Reads the fields of a row from the statement's columns, starting at column `at`.
 template <class Fields>
 Fields read_fields(SQLite::Statement& statement, int at) {
   Fields out;
@@ -256,8 +255,8 @@ Store::Store(const std::string& path, Access access) {
     state_ = std::make_unique<State>(State{path, SQLite::Database(name, flags)});
     SQLite::Database& database = state_->database;
     database.exec("PRAGMA foreign_keys = ON");
-    // Locks out other programs until the file is closed or this program ends, however it ends.
     if (access == Access::write_at_once) database.exec("PRAGMA journal_mode = MEMORY");
+    // Locks out other programs until the file is closed or this program ends for any reason.
     if (write) database.exec("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE");
     const std::int32_t id = database.execAndGet("PRAGMA application_id").getInt();
     const std::int32_t version = database.execAndGet("PRAGMA user_version").getInt();

@@ -28,8 +28,8 @@ struct Provenance {
                  options)
 };
 
-/// The provenance of this process, with the device that Session chooses. Opens a GL device to read
-/// its names. Throws Error if the named device does not answer.
+/// Returns the provenance of this process, with the device that Session chooses. Opens a GL device
+/// to read its names. Throws Error if the named device does not answer.
 Provenance provenance_now(const std::string& device, const std::string& options);
 
 constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
@@ -53,7 +53,7 @@ struct Row {
 
 struct StoredStudy {
   Declaration declaration;
-  std::vector<Row> rows;  // by position
+  std::vector<Row> rows;  // sorted by position
   /// True if every point of the grid has a row, and is_whole() is true for each row.
   bool complete() const;
 };
@@ -62,7 +62,7 @@ struct StoredStudy {
 //   total     the median over the runs of all rounds that are not void
 //   rounds    one object per round so far: the times of its runs ("ms"), the share of processors
 //             that other programs took meanwhile ("load"; null if the system does not say), and
-//             whether this was too much ("void")
+//             whether this load was too high ("void")
 //   no_times  true if the point was measured without times (--no-times)
 /// Returns the number of rounds in the row; empty if the row's point is not timed.
 std::optional<int> rounds_in(const Measurement& row);
@@ -89,14 +89,14 @@ class Store {
   std::vector<std::pair<std::int64_t, Provenance>> runs() const;
 
   std::vector<std::string> studies() const;
-  /// Empty if the study was not declared here.
+  /// Empty if the study was not declared in this store.
   std::optional<Declaration> declaration(const std::string& study) const;
   /// Repeating a declaration changes nothing. Throws Error if the study was declared differently.
   void declare(const Declaration& declaration);
-  /// Adds a row in one transaction; it is on the disk when the function returns. Replaces an old
-  /// row only if the old row says why nothing was measured, lacks rounds or has void rounds. Throws
-  /// Error if the point has any other row or is not in the grid, or if the disk refuses; the file
-  /// is then unchanged.
+  /// Adds a row in one transaction. The row is on the disk when the function returns. Replaces an
+  /// old row only if the old row says why nothing was measured, lacks rounds or has void rounds.
+  /// Throws Error if the point has any other row or is not in the grid, or if writing fails; the
+  /// file is then unchanged.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
   /// Adds a row of another store, with row.run as the number of a run in this store. Ignores

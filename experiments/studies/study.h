@@ -1,7 +1,7 @@
 // A study: a declared grid of points. Each point is measured independently, in any order and on any
 // machine, so that a study can be interrupted, resumed and divided among machines. The result of a
-// point is a structure, and a row of the store. Fields of the structure have the names of the
-// counts in the row; an empty optional is left out of the row.
+// point is a structure, stored as a row. The structure's fields have the names of the counts in the
+// row; an empty optional is left out of the row.
 #pragma once
 
 #include <cstdint>
@@ -78,7 +78,7 @@ struct RunCounts : AnswerCounts {
   /// about the radius.
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
   std::uint64_t left_by_boxes = 0;  // triangles that tests of boxes did not rule out
-  std::uint64_t views_used = 0;  // views that were drawn; 0: the boxes of triangles decided alone
+  std::uint64_t views_used = 0;     // views that were drawn; 0: tests of boxes alone decided
   std::uint64_t colliding_triangles = 0;
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // with its options, the method guarantees to miss nothing
@@ -101,7 +101,7 @@ struct RunCounts : AnswerCounts {
 struct PeerCounts : AnswerCounts {
   std::uint64_t wrong = 0;  // reported pairs that do not collide
   std::optional<std::uint64_t> colliding_triangles = {};
-  std::optional<std::string> library = {};  // with its version
+  std::optional<std::string> library = {};  // name and version
   std::optional<bool> promises = {};
   std::optional<std::string> scene_hash = {};
   FARCULL_FIELDS(colliding, missed, wrong, colliding_triangles, missed_triangles, candidates,
@@ -112,7 +112,7 @@ struct PeerCounts : AnswerCounts {
 struct LemmaCounts {
   std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0, rounded = 0;
   double largest_px = 0, largest_steps = 0;
-  double step_px = 0;  // of the depth buffer
+  double step_px = 0;  // step of the depth buffer
   double radius_px = 0, budget_px = 0;
   bool promises = false;             // true with fragment depth and the budget radius or more
   std::optional<bool> revoked = {};  // as in RunCounts
@@ -120,9 +120,10 @@ struct LemmaCounts {
                  step_px, radius_px, budget_px, promises, revoked)
 };
 
-/// Where the published radius may miss a pair. In one of the views x, y and z
+/// Placements in which the published radius may miss a pair. In one of the views x, y and z
 /// - the distance |x| + |y| of the contact from a corner of the pixels is at most corner_px, and
-/// - both rectangles are turned from a diagonal by at most the angle whose cosine is corner_cosine.
+/// - the rectangles of both triangles are turned from a diagonal of the pixels by at most the angle
+/// whose cosine is corner_cosine.
 /// placements.cpp derives the two limits. The probability is the sum over the views: 3 * 2
 /// corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
 struct CornerStratum {
@@ -133,18 +134,18 @@ struct CornerStratum {
 /// Counts of a PlacementPoint (run_point.h).
 struct PlacementCounts {
   std::uint64_t placements = 0;
-  std::uint64_t colliding_placements = 0;   // with at least one colliding pair
-  std::uint64_t missed_placements = 0;      // with at least one missed pair
+  std::uint64_t colliding_placements = 0;   // placements with a colliding pair
+  std::uint64_t missed_placements = 0;      // placements with a missed pair
   std::uint64_t colliding = 0, missed = 0;  // pairs
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
   bool promises = false;
-  std::optional<CornerStratum> stratum = {};  // placements come from it; empty: from anywhere
+  std::optional<CornerStratum> stratum = {};  // of the placements; empty: placed anywhere
   FARCULL_FIELDS(placements, colliding_placements, missed_placements, colliding, missed,
                  largest_miss_px, radius_px, budget_px, promises, stratum)
 };
 
-/// Counts of a point of the study "model": a method that may miss, at several positions of the grid
+/// Counts of a point of the study "model": the misses of a method at several positions of the grid
 /// of pixels, and the prediction of method/miss_model.h.
 struct ForecastCounts {
   std::uint64_t colliding = 0, positions = 0;
@@ -159,15 +160,15 @@ struct ForecastCounts {
                  high, outside, triangles, promises, scene_hash)
 };
 
-/// Counts of a frame of the cloth with every pair of triangles accounted for (verify/accounting.h),
-/// and results of the step to this frame (scenes/cloth/cloth.h).
+/// Counts of a frame of the cloth, with every pair of triangles accounted for
+/// (verify/accounting.h), and results of the simulation step to this frame (scenes/cloth/cloth.h).
 struct ClothCounts {
   std::uint64_t colliding = 0;  // pairs, including neighbours and missed pairs
   std::uint64_t neighbours = 0, missed = 0, candidates = 0;  // pairs
   std::uint64_t neighbour_candidates = 0;  // candidates that are neighbours, which are never culled
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
-  // RunCounts explains these.
+  // As in RunCounts.
   std::uint64_t left_by_boxes = 0, views_used = 0;
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
   bool promises = false;
@@ -218,9 +219,9 @@ struct LibraryCounts {
 struct SetCounts {
   NeighbourSizes sizes;
   std::uint64_t triangles = 0, objects = 0;  // of the scene
-  std::uint64_t accounted = 0;  // pairs of triangles of different objects; the accounting decided
-                                // all of them (verify/distance_accounting.h)
-  bool promises = false;        // guarantees to lose no nearest neighbour and no nearest pair
+  std::uint64_t accounted = 0;  // pairs of triangles of different objects, all decided by
+                                // the accounting (verify/distance_accounting.h)
+  bool promises = false;        // true: guaranteed to keep all nearest neighbours and nearest pairs
   std::string scene_hash;
   FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
 };
@@ -228,12 +229,12 @@ struct SetCounts {
 /// Counts of a DistancePoint.
 struct DistanceCounts {
   std::uint64_t asked = 0;  // distances that the question asks for
-  DistanceErrors errors;    // by kind (measure/bench.h)
+  DistanceErrors errors;    // errors by kind (measure/bench.h)
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
   std::uint64_t wrong = 0;      // distances that are not the nearest double, or were not asked for
-  bool promises = false;        // guarantees that each distance is the double nearest to the truth
-  std::string library = {};     // with its version
+  bool promises = false;        // true: guaranteed to give the double nearest to the truth
+  std::string library = {};     // name and version
   std::string scene_hash;
   FARCULL_FIELDS(asked, errors, triangles, objects, accounted, wrong, promises, library, scene_hash)
 };
@@ -261,13 +262,13 @@ struct PointResult {
                        // "cpu", equal on all machines
   PointTimes times = {};
   std::uint64_t answer = 0;   // hash of the pairs, to compare runs; it is not stored
-  std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
+  std::string device = {};    // the GL renderer that drew, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build lacks, a
                               // resolution beyond the device); empty if it was measured
 };
 
-/// A PointResult as a row of a store. Rows of other versions may have other names.
+/// A PointResult as a row of a store. Rows of other versions of farcull may have other counts.
 struct Measurement {
   nlohmann::ordered_json counts = nlohmann::ordered_json::object();
   nlohmann::ordered_json times = nlohmann::ordered_json::object();
@@ -280,7 +281,6 @@ Measurement stored(const PointResult& result);
 /// `violations` is above 0, or a contestant did not answer a question.
 bool breaks_promise(const Measurement& measurement);
 
-/// Chooses the grid of a study.
 struct GridChoice {
   bool quick = false;      // the small grid, for a first look and for tests
   std::uint64_t seed = 1;  // seed of random points; at least 1
@@ -295,32 +295,32 @@ struct Study {
   /// The points, each once. Points of one scene are together, except in a campaign. The same choice
   /// gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
-  /// Throws Error for faults of the device or the machine. Then the point fails, and a later run
-  /// repeats it.
+  /// Throws Error for faults of the device or the machine. The point then fails, and a later run
+  /// measures it again.
   std::function<PointResult(const Point&, MeasurementContext&)> measure;
-  /// Returns the library that would answer the point now, with its version, as in "CGAL 5.5.1".
-  /// This is the count `library` in the point's row. Returns "" if no library answers the point, or
-  /// if the library is missing. Null: no point of this study asks a library.
+  /// Returns the library that would measure the point now, with its version, as in "CGAL 5.5.1".
+  /// This is the count `library` in the point's row. Returns "" if no library measures the point,
+  /// or if the library is missing. Null: no point of this study uses a library.
   std::function<std::string(const Point&)> library = {};
-  /// RunPoints have exactly the counts of measure_run(), so that studies can share their rows.
+  /// True if RunPoints have exactly the counts of measure_run(). Then studies can share their rows.
   bool plain = false;
-  /// A campaign is not part of `all`: it takes many hours, needs what most machines lack, or has
-  /// its own page of results. It may alternate between its scenes, so that an early stop has
-  /// results for all of them.
+  /// True for a campaign, which is not part of `all`. It takes many hours, needs what most machines
+  /// lack, or has its own page of results. It may alternate between its scenes, so that an early
+  /// stop has results for all of them.
   bool campaign = false;
 };
 
 /// All studies, in the order of docs/experiments.md.
 const std::vector<Study>& studies();
-/// The studies of `farcull experiment all`: all that are no campaigns.
+/// Returns the studies of `farcull experiment all`: all studies that are no campaigns.
 std::vector<Study> studies_of_all();
 /// Returns the study with this name. Throws Error naming all studies if there is none.
 const Study& study_named(const std::string& name);
 /// Throws Error naming all contestants if the study "libraries" has none with this name.
 void require_contestant(const std::string& name);
 
-/// The study reduced to points whose answer may depend on the device: methods that draw or choose
-/// views, and the lemma experiment on a device.
+/// Returns the study reduced to points whose result may depend on the device: methods that draw or
+/// choose views, and the lemma experiment on a device.
 Study on_devices(const Study& study);
 
 /// The studies; each is defined in one of the .cpp files beside this one.

@@ -53,7 +53,7 @@ std::vector<Point> scenes_grid(const GridChoice& choice) {
 }
 
 // Returns the areas in pixels of the images of triangles at kSceneResolution in the views x, y and
-// z, ascending. Takes only triangles that may take part: the triangle's box meets another object's
+// z, ascending. Takes only triangles that may collide: the triangle's box meets another object's
 // box, or its object is tested against itself.
 std::vector<double> covered_pixels(const Scene& scene) {
   std::vector<double> out;
@@ -73,7 +73,7 @@ std::vector<double> covered_pixels(const Scene& scene) {
   return out;
 }
 
-// Percentile by nearest rank.
+// Returns the percentile by nearest rank.
 double percentile(const std::vector<double>& sorted, double part) {
   const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];
@@ -125,8 +125,8 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
   return out;
 }
 
-// Counts the neighbours among the candidates of the method `boxes`, so that they can be subtracted:
-// libraries leave neighbours out, but `boxes` gives them to the predicates.
+// Counts the neighbours among the candidates of the method `boxes`, so that they can be subtracted.
+// Libraries leave neighbours out, but `boxes` gives them to the predicates.
 PointResult measure_culling(const Point& point, MeasurementContext& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
@@ -164,11 +164,11 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
   out.push_back(plain_point(frame, boxes));
 }
 
-// A scene of one of the plots. A scene may appear in several plots; it is measured once.
+// A scene of a plot. A scene of several plots is measured once.
 struct Case {
   std::string scene;
   int resolution;  // of the methods that draw
-  bool drawn;      // true: methods that draw run, which are far slower on a software device
+  bool drawn;      // true: also runs methods that draw, which are slow on a software device
 };
 
 std::vector<Case> cases(bool quick) {
@@ -192,7 +192,7 @@ std::vector<Case> cases(bool quick) {
   for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
   }
-  // Time against the number of polygons: six tori, ever finer.
+  // Time against the number of polygons: six tori with more and more triangles.
   for (const int n :
        quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
     add(fmt::format("torii:{}", n), kUsual, true);
@@ -208,8 +208,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Nine runs: their range contains the median of another nine runs with a probability of 95 %. Fewer
-// runs would not do (docs/experiments.md, "Statistics").
+// Nine runs. Their range contains the median of another nine runs with a probability of 95 %. With
+// fewer runs the probability is lower (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
 std::vector<RunPoint> points_of(const Case& c) {

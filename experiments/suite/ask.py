@@ -29,8 +29,8 @@ AHEAD = 32  # quick questions that are sent before their answers
 LONGEST = 1 << 16  # bytes of a line
 MOST = 1 << 28  # bytes of an answer; an endless answer would take all memory
 AGAIN = 16  # one of this many questions of a family is asked again
-OFF = 1e-6  # larger relative errors of distances and of points are counted
-ROUNDED = 2.0 ** -48  # smaller errors of distances, as a share of the largest coordinate, count as rounding
+OFF = 1e-6  # relative errors of distances and points above this are counted
+ROUNDED = 2.0 ** -48  # errors of distances below this share of the largest coordinate are rounding
 
 
 class Wrong(Exception):
@@ -57,7 +57,7 @@ class Child:
         threading.Thread(target=self.write, daemon=True).start()
 
     def read(self):
-        """Puts lines into the queue, many at a time, which is faster. A line that is too long comes in parts."""
+        """Puts lists of lines into the queue, since single lines are slow. A line that is too long is split into parts."""
         with self.process.stdout as file:
             part = b''
             for bytes_ in iter(lambda: file.read1(LONGEST), b''):
@@ -74,14 +74,14 @@ class Child:
         self.lines.put([])
 
     def write(self):
-        """Writes the texts of send() to the process. If the process does not read, only this thread waits."""
+        """Writes the texts of send() to the process. Runs in its own thread, which waits if the process does not read."""
         with contextlib.suppress(OSError), self.process.stdin as file:
             for text in iter(self.texts.get, b''):
                 file.write(text)
                 file.flush()
 
     def send(self, text):
-        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # gives the bytes of a path back
+        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # a path may be no UTF-8; restores its bytes
 
     def end_input(self):
         self.texts.put(b'')
@@ -108,7 +108,7 @@ class Child:
         self.process.wait()
         self.end_input()
         self.errors.close()
-        while not self.lines.empty():  # the thread that reads may wait for room in the queue
+        while not self.lines.empty():  # read() may wait for room in the queue
             self.lines.get()
 
 
@@ -116,7 +116,7 @@ Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS, or card. fields: the fields after the kind. family: deaths are counted for each family.
+# kind: one of KINDS, or card. fields: the fields after the kind. family: `ask` counts early ends per family.
 Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
 
 FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
@@ -143,7 +143,7 @@ def parse(kind, fields, so_far):
         so_far.append(rest)
         return None
     if kind == 'mesh' and word == 'pair':
-        if not FOUR.fullmatch('\t'.join(rest)):  # one match for four numbers, since there are millions of lines
+        if not FOUR.fullmatch('\t'.join(rest)):  # one match for four numbers is fast; there are millions of lines
             raise ValueError(rest)
         so_far.append(tuple(map(int, rest)))
         return None
@@ -197,7 +197,7 @@ def ask_from(child, questions, first, answers, limit, start):
             now = time.monotonic()
             answers[at] = answer if answer.ns is not None else answer._replace(ns=(now - since) * 1e9)
             following, so_far, since, size, start, left = at + 1, [], now, 0, 0, 0
-        elif left < 0:  # the limit is for the whole answer, not for each line
+        elif left < 0:  # the limit is for all lines of the answer together
             return following, HUNG
 
 
@@ -211,13 +211,13 @@ def ask(command, questions, options):
         if deaths[questions[first].family] >= options.deaths:
             following += 1
             continue
-        with contextlib.closing(Child(command, options)) as child:  # an interrupt reaches this program alone
+        with contextlib.closing(Child(command, options)) as child:  # Ctrl-C reaches only this program, so it ends the child
             following, (outcome, reason) = ask_from(child, questions, first, answers, options.limit, start)
         start = 2 * options.limit
         if following == len(questions):
             return answers, (outcome, reason)
         if (outcome == 'no memory' or reason.startswith('SIGXCPU')) and following > first:
-            continue  # earlier questions may have used it up, so only the first question of a process is blamed
+            continue  # earlier questions may have used up memory or time; only the first question of a process is blamed
         answers[following] = Answer(outcome, None, 0, reason)
         deaths[questions[following].family] += 1
         following += 1
@@ -483,11 +483,11 @@ def questions_of(kind, family, suite, lines):
 
 
 def lists_of(card, suite, kinds):
-    """Yields kinds with the lines that one process gets. For pairs, each list has its own process. All questions of another
-    kind share a process: they are few, and starting a process takes longer than most of them."""
+    """Yields kinds with the lines that one process gets. For pairs, each list has its own process. All questions of any
+    other kind share a process: they are few, and starting a process takes longer than most of them."""
     for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
-    families = {}  # of questions about meshes, each of which has a list
+    families = {}  # the lines of the questions about meshes, by family
     for family, lines in map(suite.lines, suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []):
         families.setdefault(family, []).extend(lines)
     for kind in KINDS[2:]:
@@ -496,9 +496,9 @@ def lists_of(card, suite, kinds):
 
 
 def is_scored(card, one):
-    """True if the answer to the question can be scored: its label is known and the documentation has the same meaning.
-    Libraries may call a point of the surface (parameter 2: at a vertex) inside or outside. Such points are scored only for
-    methods that promise the answer of docs/suite.md."""
+    """True if the answer to the question can be scored: its label is known, and the library defines the answer as
+    docs/suite.md does. Libraries may call a point of the surface (parameter 2: at a vertex) inside or outside. Such points
+    are scored only for methods that promise the answer of docs/suite.md."""
     return one.label != '?' and (one.question.kind != 'inside' or one.parameter != '2' or card['promises'] == 'yes')
 
 
@@ -535,7 +535,7 @@ def score_distance(label, numbers, value, row):
         # The permitted error of a point: a part of the size, but at least the distance of neighbouring doubles.
         near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)
         points = exact([points[:3], points[3:]])
-        # Each point may be off by `near`, and the distance by OFF. Points that are near their triangles are never too close.
+        # Each point may be off by `near`, and the distance by OFF. Points near their triangles cannot be closer than these.
         most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
         row['points'] += 1
         row['points off'] += square(minus(*points)) > most ** 2 or any(
@@ -616,7 +616,7 @@ def table_of(kind, rows):
         total.add(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
     lines = [head] + [cells_of(name, row) for name, row in [*rows.items(), ('all', total)]]
-    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for outcomes that never came
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for absent outcomes
     widths = [max(len(line[i]) for line in lines) for i in kept]
     text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
                      for line in lines)
@@ -645,7 +645,7 @@ def as_json(card, rows):
     of all rows, and the rows."""
     total, scores = Row(), []
     for (kind, family, parameter, label), row in rows.items():
-        if kind == 'mesh':  # a mesh counts colliding pairs in place of questions
+        if kind == 'mesh':  # counts colliding pairs in place of questions
             row['asked'] = row['scored'] = row['colliding']
         if kind == 'distance':
             row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))

@@ -1,9 +1,9 @@
 // Decides labels of pairs, meshes and questions of a suite.
 //
-// The kind of a pair follows from the common points of two triangles. Their intersection is convex,
-// and each corner of it is a corner of a triangle, a point where an edge crosses the other
-// triangle's plane, or a point where two edges cross. These points are computed as rational
-// numbers, so nothing is rounded.
+// The kind of a pair follows from the common points of two triangles. The intersection is convex.
+// Each of its corners is a corner of a triangle, a point where an edge crosses the other triangle's
+// plane, or a point where two edges cross. These points are computed as rational numbers, so
+// nothing is rounded.
 #include "experiments/suite/label.h"
 
 #include <fmt/format.h>
@@ -101,8 +101,8 @@ class CommonPoints {
     for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
     return out;
   }
-  /// True if the two triangles are the same set of points: each triangle holds the corners of the
-  /// other triangle.
+  /// True if the two triangles are the same set of points: each one contains the corners of the
+  /// other.
   bool all_of_both() const {
     return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
            std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
@@ -179,8 +179,8 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
-  // The relative interior of a triangle is the triangle without its edges. A triangle that is a
-  // segment has only edges. If one_point is true here, it meets the interior of the other triangle.
+  // The relative interior of a triangle is the triangle without its edges. A degenerate triangle (a
+  // segment) has only edges. So a single common point is here in the other triangle's interior.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
@@ -221,7 +221,6 @@ constexpr std::array<const char*, 4> kQuestions = {"distance", "self", "inside",
 
 const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 
-/// Returns a scene of only the objects with these numbers.
 Scene objects_of(const Scene& scene, const std::vector<std::size_t>& numbers, bool self) {
   Scene out;
   out.name = scene.name;
@@ -467,7 +466,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // which() is right only for points off the mesh, so points on the mesh are found first.
+    // which() is right only off the mesh, so points on the mesh are found first.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

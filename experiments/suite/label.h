@@ -1,5 +1,5 @@
 // Labelled triangle pairs, meshes and questions of a suite, and the functions that decide labels.
-// docs/suite.md has the format of the files.
+// docs/suite.md defines the format of the files.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ struct SharedCorner {
 struct SuitePair {
   std::uint64_t id = 0;  // position in its file, from 0
   double parameter = 0;  // the family's parameter; 0 if it has none
-  /// Ascending, each once; empty for triangles that are not neighbours in a mesh.
+  /// Corners that are one vertex of a mesh, ascending, each pair once; empty if not neighbours.
   std::vector<SharedCorner> shared;
   SuiteKind kind = SuiteKind::unlabelled;
   std::array<Vec3, 3> a, b;  // finite corners; either triangle may be degenerate
@@ -75,14 +75,14 @@ struct SuiteMesh {
 /// A finite double as C's %a prints it, such as 0x1.8p+1, whatever the locale.
 std::string hexadecimal(double value);
 
-// Two exact oracles that share no code decide each label, so that no label of the suite rests on
-// one program alone.
+// Two exact oracles that share no code decide each label, so that no label depends on one program
+// alone.
 
-/// Returns how two closed triangles meet; docs/suite.md defines the kinds. CGAL's predicates
-/// (verify/exact) decide whether the triangles meet, and so does integer arithmetic on 38
-/// directions and 21 points (verify/certificate). Their common points, as rational numbers, decide
-/// how they meet, and CGAL's predicates (verify/contact) decide whether they cross. Throws Error
-/// naming `where` if two oracles differ. Precondition: finite coordinates.
+/// Returns how two closed triangles meet; docs/suite.md defines the kinds. Two oracles decide
+/// whether the triangles meet: CGAL's predicates (verify/exact), and integer arithmetic on 38
+/// directions and 21 points (verify/certificate). The common points, as rational numbers, decide
+/// how the triangles meet. CGAL's predicates (verify/contact) decide whether they cross. Throws
+/// Error naming `where` if two oracles differ. Precondition: finite coordinates.
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::string& where);
 
@@ -92,16 +92,17 @@ SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
 
-/// decide_neighbours() if the pair has shared corners, else decide_kind().
+/// Calls decide_neighbours() if the pair has shared corners, else decide_kind().
 SuiteKind decide(const SuitePair& pair, const std::string& where);
 
-/// Every pair of corners at equal positions, ascending.
+/// Returns every pair of corners at equal positions, ascending.
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Returns all colliding pairs of a mesh, ascending. A box join and CGAL's predicates find them.
-/// The checker of certificates proves the list with integers alone. Throws Error naming `where` if
-/// the checker does not prove it. Also throws Error if an object that is tested against itself has
-/// two vertices at one position: their triangles would be neighbours by position, but not by index.
+/// Returns all colliding pairs of a mesh, ascending. A box join and CGAL's predicates find the
+/// pairs. The checker of certificates proves the list with integers alone. Throws Error naming
+/// `where` if the checker does not prove it. Also throws Error if an object that is tested against
+/// itself has two vertices at one position: their triangles would be neighbours by position, but
+/// not by index.
 std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& where);
 
 // ---- questions beyond "which triangles collide" ----
@@ -126,12 +127,12 @@ struct SuiteQuestions {
 /// The text of a file of questions.
 std::string questions_text(const SuiteQuestions& questions);
 
-/// Returns questions for the distances of the first pairs of a family. There are as many as in the
-/// small suite. Pairs with shared corners are left out.
+/// Returns questions for the distances of the first pairs of a family: as many as the small suite
+/// has pairs of the family. Pairs with shared corners are left out.
 SuiteQuestions questions_of(const SuitePairs& pairs);
 /// Returns questions about the objects of a mesh: whether an object meets itself, and for closed
-/// objects, whether points are inside and whether two objects clash. Leaves out what the oracles
-/// cannot decide.
+/// objects, whether points are inside and whether two objects clash. Leaves out questions that the
+/// oracles cannot decide.
 SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 
 // These functions decide labels of questions. Two programs that share no code decide each label.

@@ -1,4 +1,4 @@
-// Makes and writes a suite. Pairs are decided on all cores. Each result has its own place, so the
+// Makes and writes a suite. Pairs are decided on all cores. Each result has its own slot, so the
 // results are in the order of their IDs.
 #include "experiments/suite/writer.h"
 
@@ -101,7 +101,6 @@ std::string index_text(const SuiteIndex& index) {
   return out + "sum " + sha256(out) + "\n";
 }
 
-/// Returns the sum in the last line of suite.txt.
 std::string sum_of(const std::string& text) {
   constexpr std::size_t kLine = 4 + 64 + 1;  // "sum ", SHA-256, newline
   return text.size() > kLine ? text.substr(text.size() - 65, 64) : "";

@@ -26,8 +26,8 @@ struct SuiteIndex {
   std::string sum;          // SHA-256 of all lines but the last; identifies the suite
 };
 
-/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the lines have another sum. Does
-/// not check the files; ask.py does.
+/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the sum does not fit the lines.
+/// Does not check the listed files; ask.py checks these.
 SuiteIndex read_suite(const std::string& folder);
 
 struct SuiteSettings {
@@ -39,10 +39,10 @@ struct SuiteSettings {
 struct SuiteCounts {
   std::string name;                       // of the family, or of the mesh
   std::uint64_t triangles = 0;            // of a mesh; 0 for a family of pairs
-  std::uint64_t pairs = 0;                // of a mesh, only colliding pairs
-  std::uint64_t colliding = 0;            // of a mesh, equal to `pairs`
+  std::uint64_t pairs = 0;                // for a mesh, only colliding pairs
+  std::uint64_t colliding = 0;            // for a mesh, equal to `pairs`
   std::uint64_t neighbours = 0;           // colliding pairs of a mesh that are neighbours
-  std::array<std::uint64_t, 10> kinds{};  // number of each SuiteKind; of a mesh, all 0
+  std::array<std::uint64_t, 10> kinds{};  // pairs of each SuiteKind; 0 for a mesh
 };
 
 /// Everything that was written.
@@ -55,8 +55,8 @@ struct SuiteSummary {
 SuiteCounts counts_of(const SuitePairs& pairs);
 SuiteCounts counts_of(const SuiteMesh& mesh);
 
-/// Returns pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends only on the
-/// seed, the name of the family and the ID. So any part of a suite can be made alone, and the
+/// Returns pair `id` of a family, not decided yet (SuiteKind::unlabelled). The pair depends only on
+/// the seed, the name of the family and the ID. So any part of a suite can be made alone, and the
 /// number of threads changes nothing.
 SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id);
 /// Returns the pairs of a family of this suite with their labels, in the order of their IDs. Throws

@@ -1,4 +1,4 @@
-// Reads /proc, asks the scheduler, and locks a file.
+// Reads /proc, queries the scheduler, and locks a file.
 #include "experiments/system/machine.h"
 
 #include <fcntl.h>
@@ -52,8 +52,8 @@ std::optional<double> status_kib(const std::string& key) {
 
 }  // namespace
 
-// Asks the scheduler. The C library would count all cores that are online, even if the process is
-// confined to fewer cores.
+// Queries the scheduler, since the C library would count all cores that are online, even if the
+// process is confined to fewer cores.
 unsigned usable_cores() {
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof cores, &cores) != 0)
@@ -84,7 +84,7 @@ void confine_to_cores(unsigned threads) {
 
 std::string cpu_model() { return cpuinfo({"model name"}); }
 
-std::string cpu_features() { return cpuinfo({"flags", "Features"}); }  // x86, Arm
+std::string cpu_features() { return cpuinfo({"flags", "Features"}); }  // x86: flags; Arm: Features
 
 PeakMemory::PeakMemory() {
   ::malloc_trim(0);
@@ -100,8 +100,8 @@ std::optional<double> PeakMemory::grown_mib() const {
 
 LoadMeter::LoadMeter() : before_(read()) {}
 
-// A line is "cpuN user nice system idle iowait irq softirq steal ..", in ticks. "user" includes the
-// time of guests.
+// A line of /proc/stat is "cpuN user nice system idle iowait irq softirq steal ..", in ticks.
+// "user" includes the time of guests.
 std::optional<LoadMeter::Ticks> LoadMeter::read() {
   cpu_set_t mine;
   if (sched_getaffinity(0, sizeof mine, &mine) != 0) return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<Load> LoadMeter::now() const {
 }
 
 TimingLock::TimingLock(const std::string& path) {
-  // A file of another user cannot be opened for writing, but a lock needs only reading.
+  // A file of another user may not be writable, but reading is enough for a lock.
   const auto open = [&](int flags) { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); };
   const bool ours = (file_ = open(O_RDWR)) >= 0 || (file_ = open(O_RDWR | O_CREAT)) >= 0;
   if (!ours && (file_ = open(O_RDONLY)) < 0) {
@@ -166,7 +166,7 @@ TimingLock::TimingLock(const std::string& path) {
   ::fchmod(file_, 0666);
   const std::string own = std::to_string(::getpid());
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // No error is thrown, since the number is only for the message above.
+    // No error is thrown, since the process number only serves the message above.
   }
 }
 

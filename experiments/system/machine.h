@@ -14,17 +14,16 @@ unsigned usable_cores();
 /// if the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
-/// These return the model and the features of the CPU, from /proc/cpuinfo, or "unknown" if that
-/// file does not say.
+/// Return the model and the features of the CPU from /proc/cpuinfo; "unknown" if missing there.
 std::string cpu_model();
 std::string cpu_features();
 
-/// Measures the growth of resident memory. The constructor returns free memory to the system, notes
-/// the resident size, and resets the peak (VmHWM, by /proc/self/clear_refs).
+/// Measures the growth of resident memory. The constructor returns free memory to the system,
+/// stores the resident size, and resets the peak (VmHWM, by /proc/self/clear_refs).
 class PeakMemory {
  public:
   PeakMemory();
-  /// The peak since construction minus the noted size, MiB; empty if the system does not say.
+  /// Returns the peak since construction minus the stored size, in MiB; empty if unknown.
   std::optional<double> grown_mib() const;
 
  private:
@@ -58,13 +57,13 @@ class LoadMeter {
   std::optional<Ticks> before_;
 };
 
-/// Lets one process per machine measure times. The lock ends with the process, even in a crash.
+/// Lets one process per machine measure times. The lock ends with the process, even if it crashes.
 class TimingLock {
  public:
   static constexpr const char* kFile = "/tmp/farcull-times.lock";
 
-  /// Throws Error naming the process that holds the lock, or the path if the file cannot be opened.
-  /// path: tests use another file.
+  /// Throws Error naming the process that holds the lock, or naming the path if the file cannot be
+  /// opened. path: the lock file; tests use another file.
   explicit TimingLock(const std::string& path = kFile);
   ~TimingLock();
   TimingLock(const TimingLock&) = delete;

@@ -1,4 +1,4 @@
-// Writes a file beside its path and renames it. Signal handlers allocate no memory and take no
+// Writes a new file beside the path and renames it. Signal handlers allocate no memory and take no
 // lock.
 #include "experiments/system/output_file.h"
 
@@ -32,7 +32,7 @@ long items_done = 0, items_wanted = 0, files_written = 0;
 const char *items = "", *how_it_ends = "";
 bool on_terminal = false;
 
-// Allocates nothing, since destructors call it.
+// Allocates no memory, since destructors call this function.
 void make_message() {
   std::array<char, 512>& buffer = buffers[message == buffers[0].data() ? 1 : 0];
   const char* const start = on_terminal ? "\r\033[K" : "";
@@ -66,7 +66,7 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
 }
 
 // The file that a path leads to. A regular or new file is written under another name and renamed.
-// Anything else is `direct`: the text is written to it without renaming.
+// Other files are `direct`: the text is written to them without renaming.
 struct Target {
   std::string path;
   bool exists = false;
@@ -79,7 +79,7 @@ Target target_of(const std::string& path) {
   struct stat link = {}, status = {};
   target.exists = ::stat(path.c_str(), &status) == 0;
   const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
-  // /dev/stdout is a link to standard output. That may be a file that another program holds open.
+  // Links in /dev and /proc, such as /dev/stdout, may lead to a file that another program has open.
   const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
   target.mode = status.st_mode;
   target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
@@ -96,11 +96,11 @@ std::string folder_of(const std::string& path) {
 // The path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// Returns the path of the half-written file for `path`: in the same folder, with an ending. A name
-// that is too long for the file system is cut, but not within a UTF-8 character.
+// Returns the path of the half-written file for `path`: the same folder and name, with an ending. A
+// name that is too long for the file system is cut, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
-  const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
+  const std::size_t name = path.rfind('/') + 1;  // 0 if there is no folder
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   const std::size_t room = (most > 0 ? static_cast<std::size_t>(most) : NAME_MAX) - end.size();
   std::size_t size = std::min(path.size(), name + room);
@@ -115,9 +115,9 @@ extern "C" void remove_half_written(int signal) {
 
 }  // namespace
 
-// The name of a file that is being written. The destructor removes the file unless put() renamed
-// it. If a signal ends the program, its handler removes the file. Only one object may exist at a
-// time.
+// A file that is being written. The destructor removes the file unless put() renamed it. If a
+// signal ends the program, the signal handler removes the file. Only one object of this class may
+// exist at a time.
 class HalfWritten {
  public:
   // Precondition: the path fits into half_written.
@@ -150,8 +150,8 @@ class HalfWritten {
 
 namespace {
 
-// Writes all of the text. If `at` is not negative, writes it from the byte `at` of the file on.
-// Returns 0 or the errno of the first failure.
+// Writes all of the text: from byte `at` of the file on, or at the current position if `at` is
+// negative. Returns 0 or the errno of the first failure.
 int write_all(int file, const std::string& text, long long at) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = at < 0 ? ::write(file, text.data() + done, text.size() - done)
@@ -273,7 +273,7 @@ GrowingOutput::~GrowingOutput() {
   try {
     finish();
   } catch (const Error&) {
-    // A destructor must not throw. Only a stream may lack its end.
+    // A destructor must not throw. A regular file has its end already; only a stream may lack it.
   }
   if (file_ >= 0) ::close(file_);
 }
@@ -329,8 +329,8 @@ void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   // If a standard stream is closed, the next opened file would get its number, and output for the
-  // stream would go into that file. So /dev/null takes the number. It is opened such that its use
-  // fails.
+  // stream would go into that file. So /dev/null gets the number, in a mode in which every use of
+  // the stream fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

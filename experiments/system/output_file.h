@@ -26,10 +26,10 @@ void check_output(const std::string& path);
 /// meanwhile. Precondition: SIGPIPE and SIGXFSZ are ignored (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
-/// Takes the parts of a text in order.
+/// Receives the parts of a text in order.
 using TextSink = std::function<void(std::string_view)>;
-/// Does the same for a long text, which write(sink) passes to the sink part by part. If `write`
-/// throws, the exception is passed on, and an existing file stays as it was.
+/// Writes a long text in the same way: `write` passes the text to the given sink part by part. If
+/// `write` throws, the exception is passed on, and an existing file stays as it was.
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 
 /// Writes help to standard output. A closed pipe is no error, since the reader may stop early, as
@@ -116,7 +116,7 @@ class SignalGuard {
   SignalGuard(const SignalGuard&) = delete;
   SignalGuard& operator=(const SignalGuard&) = delete;
 
-  /// For a handler: ends the program as the signal would have.
+  /// Called by a handler. Ends the program as the signal does by default.
   static void end_by(int signal) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -133,11 +133,11 @@ class SignalGuard {
 /// live at once.
 class Interruptible {
  public:
-  /// Without counts, the line is "farcull: interrupted; no file was written", or it says how many
-  /// files were written.
+  /// Without counts, the line is "farcull: interrupted; no file was written", or gives the number
+  /// of files that were written.
   Interruptible();
   ~Interruptible();
-  /// The texts must outlive this object. terminal: clears the line of progress first.
+  /// The texts must outlive this object. terminal: the handler first clears the progress line.
   Interruptible(long wanted, const char* what, const char* end, bool terminal);
 
   void done(long count);

@@ -16,24 +16,24 @@ namespace farcull {
 /// everywhere.
 std::size_t text_columns(std::FILE* stream = stdout);
 
-/// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it.
-/// Further lines are indented to the place where the text begins: after leading blanks, and after a
-/// label that two blanks follow. The indentation is at least `indent`.
+/// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it. A
+/// continuation line is indented to where the text of its line begins: after leading blanks, and
+/// after a label followed by two blanks. The indentation is at least `indent`.
 std::string wrapped(const std::string& text, std::size_t columns = text_columns(),
                     std::size_t indent = 0);
 
 /// Rows of cells. Each column is as wide as its widest cell. If the table is then too wide, its
-/// widest left-aligned column is wrapped. If that is not enough, the columns that do not fit stand
-/// in further tables below, each with the columns that name a row.
+/// widest left-aligned column is wrapped. If that is not enough, the columns that do not fit are
+/// put into further tables below. Each of these tables repeats the columns that name a row.
 class Table {
  public:
-  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: the number of first
-  /// columns that name a row.
+  /// One letter per column: 'l' aligns to the left, 'r' to the right. keys: how many leading
+  /// columns name a row.
   explicit Table(std::string_view alignment, std::size_t keys = 1)
       : alignment_(alignment), keys_(std::min(keys, alignment.size())) {}
   /// In a table of several columns, a row of one cell is a note on the row above it.
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-  /// Two blanks between columns, none at the ends of lines.
+  /// Returns the table as text: two blanks between columns, no blanks at the ends of lines.
   std::string text(std::size_t columns = text_columns()) const;
 
  private:
@@ -44,8 +44,8 @@ class Table {
 
 enum class Colour { good, bad, doubtful };  // green, red, yellow
 
-/// The text in bold and in the colour if the stream (STDOUT_FILENO, STDERR_FILENO) is a terminal
-/// that is not dumb, and NO_COLOR is unset or empty (https://no-color.org); else unchanged.
+/// Returns the text in bold and in the colour if the stream (STDOUT_FILENO, STDERR_FILENO) is a
+/// terminal, TERM is set and not "dumb", and NO_COLOR is unset or empty (https://no-color.org).
 std::string coloured(const std::string& text, Colour colour, int stream);
 
 /// Quotes a word for a POSIX shell: unchanged if it is plain, else in single quotes.

@@ -1,4 +1,4 @@
-// Merges sorted lists. The next line of the result is the smallest of the next lines of all lists.
+// Merges sorted lists with a priority queue of the lists' next lines.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -97,7 +97,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Throws Error if a tile is given twice or not at all, or if triangles are in no tile.
+// Throws Error if a tile is given twice or not at all, or if a triangle is in no tile.
 void require_whole(const std::vector<Source>& sources) {
   const Source& first = sources.front();
   std::vector<const Source*> tiles(first.n, nullptr);
@@ -153,7 +153,7 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  // The object and the triangle of a, then those of b.
+  // Returns the object and the triangle of a, then those of b.
   const std::array<std::uint64_t, 4>& key() const { return key_; }
   const std::string& line() const { return line_; }
 
@@ -194,11 +194,10 @@ class List {
   Sha256 hash_;
 };
 
-// Writes all rows in order. Returns the number of rows.
 std::uint64_t merge_lists(const std::vector<Source>& sources, const std::string& out) {
   StreamedOutput file(out);
   std::string piece = sources.front().columns + "\n";
-  // All lists are open at once, and a shell may have set a low limit of open files.
+  // Raises the limit of open files, since all lists are open at once.
   if (rlimit files{}; ::getrlimit(RLIMIT_NOFILE, &files) == 0) {
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);

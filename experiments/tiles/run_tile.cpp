@@ -1,5 +1,5 @@
-// Cuts the scene, gathers the triangles of one tile, and runs them with a filter that removes the
-// candidates of other tiles.
+// Cuts the scene into tiles, gathers the triangles of one tile, and runs the method on these
+// triangles. A filter removes candidates that belong to other tiles.
 #include "experiments/tiles/run_tile.h"
 
 #include <fmt/format.h>
@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t kSample = 65536;
 
-// The sample holds the triangles whose hashed numbers have a certain number of zero bits at the
-// end. This number of bits grows by one each time the sample becomes too large. So the sample
-// depends only on the scene, not on the parts in which the scene is read.
+// Samples the boxes of triangles. The sample holds the triangles whose hashed number ends with a
+// certain number of zero bits. This number of bits grows by one whenever the sample becomes too
+// large. So the sample depends only on the scene, not on the parts in which the scene is read.
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
@@ -48,8 +48,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// Returns the number of cuts that are at most at + reach, rounded as in meets(). With reach 0, this
-// is the index of the tile in which `at` lies.
+// Returns how many cuts are at most `at` + `reach`, with the rounding of meets(). With reach 0, the
+// result is the index of the tile that contains `at`.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
@@ -58,8 +58,7 @@ std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
 
 Box box_of(const Scene& scene, std::uint32_t triangle) { return grown_box(scene, triangle, 0); }
 
-// Counts the boxes that meet each tile. step_[k] is the count of tile k minus the count of tile k
-// - 1.
+// Counts the boxes that meet each tile. step_[k] is the count of tile k minus that of tile k - 1.
 class Loads {
  public:
   Loads(const Cuts& cuts, double clearance)
@@ -86,9 +85,9 @@ class Loads {
 };
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles and objects, see plan_pairs()
+constexpr std::size_t kMost = std::size_t{1} << 31;  // limit of triangles and objects in a tile
 
-// Vertices get new numbers part by part, since no two parts share a vertex.
+// Collects the triangles of one tile. Renumbers vertices part by part: parts share no vertex.
 class Gathering {
  public:
   Gathering(const Census& census, const Tile& tile)
@@ -122,8 +121,8 @@ class Gathering {
                 "do not change its files while a run reads them");
   }
 
-  // The hash begins with the sizes of all objects at the first reading (begun_hash()), so this
-  // reading must find the same sizes.
+  // Throws Error if an object has another size than at the first reading of the scene. The hash
+  // already includes the sizes of the first reading (begun_hash()).
   void require_known(const Object& object) {
     if (series_ == census_.sizes.size() || census_.sizes[series_].first != size_word(object))
       changed();
@@ -180,14 +179,14 @@ class Gathering {
   Tile tile_;
   Fnv1a hash_, faces_;
   TileScene out_;
-  std::size_t series_ = 0;       // index in census_.sizes of the series of the next object
-  std::uint64_t of_series_ = 0;  // objects of this series before the next object
+  std::size_t series_ = 0;       // index in census_.sizes: the series of the next object
+  std::uint64_t of_series_ = 0;  // objects before the next object in this series
   std::uint64_t objects_ = 0;
-  std::vector<std::uint32_t> vertex_;  // the number in the tile of each vertex of the part
+  std::vector<std::uint32_t> vertex_;  // for each vertex of the part: its number in the tile
 };
 
-// Returns the pairs of objects, with the numbers that the objects have in the part. Leaves out a
-// pair if one of its objects is outside the part, since the tile has no triangle pair of them.
+// Returns the pairs of objects with the objects' numbers in the part. Leaves out pairs with an
+// object that is not in the part, since the tile has no triangle of that object.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -204,7 +203,6 @@ std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const List
 
 using Json = nlohmann::ordered_json;
 
-// Returns the largest resident memory of this process so far.
 double peak_memory_mib() {
   struct rusage usage = {};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -445,8 +443,8 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // Asks about a smaller scene with the same answer. The smaller scene keeps at most two objects
-  // with triangles, and one object without triangles.
+  // Calls nothing_to_test() for a smaller scene, which has the same answer. The smaller scene has
+  // at most two objects with triangles, and one object without triangles.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

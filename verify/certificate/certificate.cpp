@@ -1,4 +1,4 @@
-// Makes certificates. The choice of directions need not be trusted, since the checker proves it.
+// Makes certificates. The chosen directions need not be trusted, since the checker verifies them.
 #include "verify/certificate/certificate.h"
 
 #include <algorithm>
@@ -15,8 +15,7 @@
 
 namespace farcull {
 
-// An object of n triangles has n (n - 1) / 2 pairs. Objects with consecutive indices join into one
-// range.
+// Objects with consecutive indices form one range.
 
 NotAsked not_asked(const Scene& scene) {
   NotAsked out;

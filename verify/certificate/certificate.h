@@ -1,6 +1,6 @@
-// A certificate says what a run claims about every pair of triangles whose boxes overlap. It has
-// one byte of evidence for each pair. So a stranger can prove or refute the claims without the code
-// that culled. docs/certificate.md has the format and the proof that 38 directions suffice.
+// A certificate states what a run claims about every pair of triangles whose boxes overlap. It has
+// one byte of evidence for each pair. So anyone can prove or refute the claims without the culling
+// code. docs/certificate.md has the format and the proof that 38 directions suffice.
 //
 // A check that passes proves which pairs of triangles of the scene meet, among the pairs that
 // count. A pair counts if its triangles are of different objects, or of one object marked `self`.
@@ -29,8 +29,8 @@
 namespace farcull {
 
 /// The pairs that a scene does not ask about: pairs of triangles of one object that is not `self`.
-/// Counts of pairs that meet, are missed or are proved exclude these pairs, so a report of such a
-/// count has to name their number.
+/// No count of meeting, missed or proved pairs includes these pairs, so a report of such a count
+/// has to state how many they are.
 struct NotAsked {
   std::uint64_t objects = 0;                         // objects that are not `self`
   std::uint64_t pairs = 0;                           // pairs of two triangles of one such object
@@ -74,7 +74,7 @@ struct Certificate {
     bool operator==(const View&) const = default;
   };
 
-  /// What a run says about itself. No check can prove it.
+  /// Statements of a run about itself. No check can prove them.
   struct Run {
     std::string method;
     std::uint64_t resolution = 0;  // px; 0 if nothing was drawn
@@ -86,14 +86,14 @@ struct Certificate {
       bool operator==(const Device&) const = default;
     };
     std::optional<Device> device;          // none if nothing was drawn
-    std::vector<std::string> assumptions;  // about the device, on which the method relied
+    std::vector<std::string> assumptions;  // about the device; the method relied on them
     bool operator==(const Run&) const = default;
   };
 
   SceneKey scene;            // the whole scene, even if the certificate is of a tile
   double clearance = 0;      // world units, finite, >= 0
   std::optional<Tile> tile;  // none: the certificate is about all pairs
-  Unasked not_asked;         // the pairs that the whole scene leaves out
+  Unasked not_asked;         // the pairs that the whole scene does not ask about
   Claims claims;
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
@@ -120,8 +120,7 @@ constexpr std::uint8_t kKept = 0x40;
 
 struct ListNumbers;
 
-/// Facts about the whole scene of a tile. The Scene that goes with them has only the triangles that
-/// meet the tile.
+/// Facts about the whole scene, for functions whose Scene has only the triangles that meet a tile.
 struct WholeScene {
   Tile tile;
   const ListNumbers* numbers = nullptr;  // numbers of objects and triangles in the whole scene
@@ -134,34 +133,32 @@ Certificate::Unasked unasked_of(const Scene& scene);
 
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
 /// the kept pairs that the run found to meet, neighbours included. Each list is sorted, each pair
-/// once, a < b. All pairs count and have overlapping boxes. colliding is a part of kept. whole: not
-/// null if the run was on a tile; then all pairs belong to the tile. Throws std::logic_error
-/// otherwise.
+/// once, a < b. All pairs count and have overlapping boxes. whole: not null if the run was on a
+/// tile; then all pairs belong to the tile. Throws std::logic_error if the lists are not so.
 ///
-/// The certificate repeats errors of the run, so that the check refutes them. A kept pair is said
-/// to meet iff it is in `colliding`. list_sha256 is the hash of `colliding`. If the run calls a
-/// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept, and kMeets
-/// if it was culled; kept neighbours get kNeighbours. With a clearance > 0, kept pairs whose boxes
-/// are farther apart than the clearance are left out, since they need no evidence.
+/// The certificate repeats errors of the run, so that the check refutes them. A kept pair is
+/// claimed to meet iff it is in `colliding`. list_sha256 is the hash of `colliding`. If the run
+/// calls a pair disjoint and no direction proves it, the pair gets direction 0 if it was kept, and
+/// kMeets if it was culled; kept neighbours get kNeighbours. With a clearance > 0, kept pairs whose
+/// boxes are farther apart than the clearance are left out, since they need no evidence.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0, const WholeScene* whole = nullptr);
 
-/// Makes a certificate for a list of pairs, as for a run that kept just these pairs and found that
+/// Makes a certificate for a list of pairs, as if a run had kept just these pairs and found that
 /// they meet. Leaves out pairs that do not count or whose boxes are disjoint; find_differences()
 /// (pair_list.h) names these. listed: a < b, any order, repetitions allowed.
 Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> listed,
                                 double clearance = 0);
 
 /// Returns the certificate as JSON, with the keys always in the same order and a final newline. The
-/// version is 5 for a tile, else 4 with a clearance, else 3. Bytes of strings that are not UTF-8
-/// become U+FFFD. Throws std::logic_error if a radius or the clearance is not finite.
+/// version is 5 for a tile, else 4 with a clearance, else 3. Bytes in strings that are not valid
+/// UTF-8 become U+FFFD. Throws std::logic_error if a radius or the clearance is not finite.
 std::string to_text(const Certificate& certificate);
 
 /// The inverse of to_text(). Throws Error naming `name` and the fault if the text is not JSON of
 /// exactly this form. Faults are: wrong syntax or UTF-8; unknown, missing or repeated keys; wrong
-/// types, ranges, base64, format or version. The claims are not judged. Memory in proportion to the
-/// text.
+/// types, ranges, base64, format or version. The claims are not checked. Memory O(text).
 Certificate parse_certificate(std::string_view text, const std::string& name);
 
 enum class Verdict : std::uint8_t { proved, refuted, not_proved };
@@ -173,24 +170,25 @@ struct CheckResult {
   std::optional<TrianglePair> pair;     // the pair that decides the verdict, if one does
   Certificate::Claims found;            // the checker's own counts
   std::vector<TrianglePair> meeting;    // the pairs that meet, as the checker decided; sorted
-  std::string list_sha256;              // pair_list_hash() of `meeting`; empty if none was decided
+  std::string list_sha256;              // pair_list_hash() of `meeting`; empty without decisions
   std::uint64_t culled_meeting = 0;     // number of pairs that meet but are called culled
   std::vector<std::string> unattested;  // what the check cannot prove, one item each
   double ms = 0;                        // wall clock of the whole check
   double decide_ms = 0;                 // wall clock of the decisions alone
 };
 
-/// Decides every pair of the scene whose boxes overlap, in integers, and compares with the claims.
-/// - refuted: the certificate calls a pair culled that meets, or is wrong about whether a pair
-///   meets. The first such pair in order is named.
-/// - not_proved: no pair refutes the certificate, but it has another fault. It is of another scene,
-///   or the evidence is too short or too long, or a count or the hash of the list is wrong, or a
-///   byte is wrong. A byte is wrong if it has no meaning, if its direction does not separate the
-///   disjoint pair, or if it does not say that neighbours meet only in what they share.
-/// - proved: there is no fault. So the pairs of the list meet, and no other pairs that count. The
+/// Decides in integers every pair of the scene whose boxes overlap, and compares with the claims.
+/// - refuted: a pair meets that the certificate calls culled, or the certificate is wrong about
+///   whether a pair meets. The result names the first such pair.
+/// - not_proved: no pair refutes the certificate, but the certificate has another fault: it is of
+///   another scene, the evidence is too short or too long, a count or the hash of the list is
+///   wrong, or a byte is wrong. A byte is wrong if it has no meaning, if its direction does not
+///   separate the disjoint pair, or if it does not say that neighbours meet only in their shared
+///   part.
+/// - proved: there is no fault. So of the pairs that count, exactly the pairs of the list meet. The
 ///   check does not prove which pairs the run kept, nor anything else in Run.
-/// If the scene or the length of the evidence is wrong, no decision is returned: bytes and pairs do
-/// not belong together.
+/// If the scene or the length of the evidence is wrong, no decision is returned, since bytes and
+/// pairs do not match.
 /// With `whole`, `scene` has only the triangles that meet the tile. The check is then about the
 /// pairs that belong to the tile. The certificate has to be of this tile and of the whole scene.
 /// Throws std::logic_error if the clearance is negative or not finite. Precondition: validate()

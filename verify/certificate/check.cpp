@@ -1,5 +1,5 @@
-// The checker of certificates. Only box_pairs, integer_pair, pair_list and this file have to be
-// right.
+// The checker of certificates. A verdict can be trusted if this file, box_pairs, integer_pair and
+// pair_list are correct.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,13 +21,13 @@ enum class EvidenceFault : std::uint8_t {
   as_claimed,
   // These findings leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but the direction does not separate it
-  not_neighbours,   // neighbours meet only in what they share, but the byte does not say so
-  no_evidence,      // the byte means nothing
+  not_neighbours,   // neighbours meet only in their shared part, but the byte does not say so
+  no_evidence,      // the byte has no meaning
   // These findings refute the certificate:
   culled_meets,
   meets,       // a kept pair meets, but is claimed to be disjoint
   separated,   // the pair is disjoint, but is claimed to meet
-  neighbours,  // neighbours meet only in what they share, but are claimed to meet
+  neighbours,  // neighbours meet only in their shared part, but are claimed to meet
 };
 
 enum class Kind : std::uint8_t { separated, neighbours, meeting };
@@ -199,7 +199,7 @@ CheckResult not_proved(std::string reason) {
 
 CheckResult decide_all(const Certificate& certificate, const Scene& scene,
                        const WholeScene* whole) {
-  constexpr std::size_t kBlock = 1 << 16;  // at a time: there may be many millions of pairs
+  constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time; there may be many millions
   constexpr std::size_t kPerThread = 1024;
   BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Tile());
   const std::vector<std::uint32_t> owner = owners(scene);

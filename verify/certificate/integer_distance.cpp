@@ -1,4 +1,4 @@
-// Scales a pair of triangles to integers once. GMP's integers are used, since the square of a
+// Each pair of triangles is scaled to integers once. The integers are GMP's, since the square of a
 // distance mostly has many digits.
 #include "verify/certificate/integer_distance.h"
 
@@ -24,9 +24,9 @@ namespace {
 
 constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
-/// Constructs one point on feature of_a of a and one point on feature of_b of b. If no earlier pair
-/// of features has nearest points, no other two points of these features can be nearest. Returns
-/// false if there are no such points.
+/// Constructs a point on feature of_a of a and a point on feature of_b of b. If no earlier pair of
+/// features has nearest points, only these two points of the features can be nearest. Returns false
+/// if no such points exist.
 bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                int of_a, int of_b) {
   if (of_a < kFirstEdge) {
@@ -44,8 +44,8 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const 
 }
 
 // is_within() counts the crossings of a mesh and a ray from a point. The ray has the direction of
-// the first axis. It starts a little beside the point, by e along the second axis and by e^2 along
-// the third, where e > 0 is infinitely small. So the ray meets no edge, and one ray is enough. The
+// the first axis. It starts at the point moved by e along the second axis and by e^2 along the
+// third axis, where e > 0 is infinitely small. So the ray meets no edge, and one ray is enough. The
 // sign of a polynomial in e is that of its coefficient of lowest degree that is not 0.
 
 /// Returns on which side of the ray the edge from p to q passes: the sign of the first coordinate

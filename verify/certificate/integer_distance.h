@@ -32,7 +32,7 @@ bool is_rounded(const Vec3& x, const FractionPoint& point);
 struct IntegerDistance {
   Fraction squared;
   std::array<std::uint8_t, 2> features{};
-  /// The nearest points on these features, of a and of b. The features have no others.
+  /// The nearest points on these features: one of a, one of b. The features have no others.
   std::array<FractionPoint, 2> points;
 };
 
@@ -42,8 +42,8 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
 
 /// True iff the distance is more than `length`; with or_as_far, iff it is at least `length`. Looks
 /// for a direction d among the 38 of integer_pair.h whose gap g is long enough: g^2 >
-/// length^2 (d . d), or >= with or_as_far. So this function shares no construction with
-/// integer_distance().
+/// length^2 (d . d), or >= with or_as_far. Unlike integer_distance(), this function constructs no
+/// points.
 bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
                bool or_as_far);
 
@@ -51,13 +51,13 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
 // verify/inside.h. The accounting uses this part as a check, so it uses neither verify/inside nor
 // experiments/method/distances. docs/proximity.md has the proof ("One object inside another").
 
-/// a: object a is inside object b, with all of its points. b: object b is inside object a. none:
-/// neither object is inside the other. not_closed: neither is inside the other, but the box of one
-/// is in the box of the other, whose mesh is not closed. unknown: nothing is claimed.
+/// a: all of object a is inside object b. b: all of object b is inside object a. none: neither
+/// object is inside the other. not_closed: neither is inside the other, but the box of one is in
+/// the box of the other, whose mesh is not closed. unknown: nothing is claimed.
 enum class InsideClaim : std::uint8_t { unknown, none, a, b, not_closed };
 
-/// Answers for one scene, which must not change and must outlive this object. Stores facts about
-/// each object of the scene that take long to compute.
+/// Answers for one scene, which must not change and must outlive this object. Facts that take long
+/// to compute are stored for each object of the scene.
 class IntegerInside {
  public:
   explicit IntegerInside(const Scene& scene);

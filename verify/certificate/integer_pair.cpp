@@ -23,7 +23,6 @@ int bit_length(Wide magnitude) {
                    : std::bit_width(static_cast<std::uint64_t>(magnitude));
 }
 
-/// Returns the triangle of points[first] and the two points after it.
 Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int first) {
   Corners<Wide> out;
   for (int i = 0; i < 3; ++i) {
@@ -118,9 +117,9 @@ IntegerPair::Big& IntegerPair::big() {
   return *big_;
 }
 
-/// Makes the direction and returns use(scratch, a, b), in integers that are long enough.
+/// Computes the direction and returns use(scratch, a, b), in integers that are long enough.
 bool IntegerPair::with_direction(int direction, double clearance, const auto& use) {
-  // A clearance is mostly a decimal fraction, which makes the integers too long for Wide.
+  // Most clearances are decimal fractions. Scaled with such a clearance, the integers are too long.
   if (clearance == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;

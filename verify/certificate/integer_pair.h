@@ -7,11 +7,11 @@
 // overflow. The integers are GMP's, or machine integers if the scaled coordinates are short enough
 // (most_bits() has the bound and its proof).
 //
-// Triangles are as in verify/exact.h: touching counts, and a degenerate triangle is the segment or
-// the point that it is. docs/certificate.md proves that one of the 38 directions separates every
-// disjoint pair, and that one of 21 points shows that any other pair meets. With a clearance, one
-// of the 38 directions shows that a pair is farther apart; for any other pair, one of 42 pairs of
-// points or one of the 21 points shows that it is not.
+// Triangles are as in verify/exact.h: touching counts, and a degenerate triangle is a segment or a
+// point. docs/certificate.md proves: if the triangles are disjoint, one of the 38 directions
+// separates them; otherwise one of 21 points lies in both. With a clearance: if the triangles are
+// farther apart, one of the 38 directions shows this; otherwise one of 42 pairs of points or one of
+// the 21 points shows that they are not.
 #pragma once
 
 #include <array>
@@ -79,16 +79,16 @@ class IntegerPair {
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;
   std::array<unsigned, 2> shared_{};  // bit i: corner i equals a corner of the other triangle
-  // The corners of a, then of b, relative to the first corner of a. Not set if too long.
+  // The corners of a, then of b, relative to the first corner of a. Not set if they are too long.
   std::array<std::array<std::int64_t, 3>, 6> small_;
   int bits_ = 0;  // |difference of two coordinates| < 2^bits_
   std::unique_ptr<Big> big_;
 };
 
 /// Guesses in doubles which of the 38 directions separates two triangles most clearly. The guess is
-/// the first direction of kByDegree whose gap beyond the clearance is far above rounding errors. If
-/// there is none, the guess is the direction with the widest gap in proportion to the pair's
-/// extent. Doubles may overflow, so the guess may be wrong.
+/// the first direction of kByDegree whose gap exceeds the clearance by far more than rounding
+/// errors. If there is no such direction, the guess is the direction with the widest gap in
+/// proportion to the pair's extent. Doubles may overflow, so the guess may be wrong.
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// The directions and points that prove something about a pair of triangles. Only integer_pair.cpp
-// and integer_distance.cpp include this file.
+// Directions that prove two triangles disjoint, and points that prove that they meet or how near
+// they are. Only integer_pair.cpp and integer_distance.cpp include this file.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace farcull::integer {
 
-// The 38 directions of a pair of triangles, and the proofs that a direction gives. The idea is from
-// Gottschalk, Lin, Manocha, "OBBTree" (1996). docs/certificate.md proves that the 38 directions are
-// complete for triangles, degenerate ones included.
+// The 38 directions of a pair of triangles, and what a direction proves. The idea is from
+// Gottschalk, Lin, Manocha, "OBBTree" (1996). docs/certificate.md proves that one of the 38
+// directions separates any two disjoint triangles, even degenerate ones.
 
 /// The intermediate results of a test. They are reused between tests, since allocating GMP's
 /// integers anew takes time.
@@ -51,7 +51,6 @@ void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corner
   }
 }
 
-/// Projects the corners onto s.d.
 template <class Integer>
 void project(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
   for (int i = 0; i < 3; ++i) {
@@ -116,9 +115,9 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   return in_a == edge_of((direction - 2) / 3) && in_b == edge_of((direction - 2) % 3);
 }
 
-/// Returns the most bits of a difference of coordinates for which has_gap(make_direction()) fits in
-/// 127 bits. Let |x| < D = 2^bits for all differences x of coordinates; coordinates are relative to
-/// a's first corner:
+/// Returns how many bits a difference of coordinates may have so that all integers in
+/// make_direction() and has_gap() fit in 127 bits. Let |x| < D = 2^bits for all differences x of
+/// coordinates; coordinates are relative to a's first corner:
 ///   corner-corner: |d| < D, |projection| < 3 D^2 < 2^(2 bits + 2)
 ///   cross products: |d| < 2 D^2, |projection| < 6 D^3 < 2^(3 bits + 3)
 ///   perpendiculars: e.e, |w.e| < 3 D^2, |d| < 6 D^3, |projection| < 18 D^4 < 2^(4 bits + 5)
@@ -131,12 +130,12 @@ inline int most_bits(int direction) {
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-/// Constructs points and verifies them. A point is a vector of integers over one integer. The
+/// Constructs points and verifies them. A point is a vector of integers divided by one integer. The
 /// integers are members, since allocating GMP's integers anew takes time.
 class PointSearch {
  public:
   /// Each of these functions constructs a point, and returns false if the point does not exist. The
-  /// point may lie in neither triangle.
+  /// point may be outside both triangles.
   bool corner(const BigCorners& t, int i) {
     point_ = t[i];
     scale_ = 1;
@@ -173,8 +172,8 @@ class PointSearch {
     dot(scale_, u_, u_);
     return along(t[i]);
   }
-  /// Constructs the foot of the perpendicular from `from` to the plane of t. False if t has no
-  /// plane.
+  /// Constructs the foot of the perpendicular from `from` to the plane of t. False if t is
+  /// degenerate.
   bool foot_on_plane(const BigCorners& t, const BigVector& from) {
     make_normal(t);
     minus(w_, from, t[0]);
@@ -222,7 +221,7 @@ class PointSearch {
   }
 
   /// Sets over / under, under > 0, to the square of the distance from the last point of this search
-  /// to the last point of `other`. Not reduced.
+  /// to the last point of `other`. The fraction is not in lowest terms.
   void squared_distance(const PointSearch& other, mpz_class& over, mpz_class& under) {
     from_to(other);
     dot(over, w_, w_);

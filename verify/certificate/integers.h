@@ -101,8 +101,8 @@ inline mpq_class rational(double x) {
   return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
 }
 
-/// True if x is a number y rounded to the nearest double, ties to even. beside(next) returns the
-/// sign of y minus the middle of x and `next`, where `next` is a double beside x.
+/// True if a number y, rounded to the nearest double, ties to even, becomes x. beside(next) returns
+/// the sign of y - (x + next) / 2, where `next` is a neighbouring double of x.
 template <class Beside>
 bool is_nearest_double(double x, const Beside& beside) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -119,7 +119,7 @@ struct ScaledPair {
   int exponent = 0;
 };
 
-/// Scales two triangles to integers. length: a finite number that has to become an integer, too.
+/// Scales two triangles to integers. length: a finite number; the scale makes it an integer, too.
 inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                          double length = 0) {
   int least = std::numeric_limits<int>::max();
@@ -138,7 +138,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       scale(out.b[i][k], b[i][k], out.exponent);
     }
   }
-  // Directions and gaps depend only on differences of corners. The differences are shorter numbers.
+  // Directions and gaps depend only on differences of corners. The differences have fewer digits.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
     for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
@@ -165,7 +165,7 @@ struct Fraction {
 /// below D = 2^2099. In this scale the square of a distance is (w . d)^2 / (d . d), where d is at
 /// most a cross product of two edges. So numerator and denominator are below (6 D^3)^2 < 2^12600.
 /// In world units the denominator has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 <
-/// 2^10548. Division by common factors only shortens them. log10(2^12600) < 3793.
+/// 2^10548. Division by common factors only shortens both numbers. log10(2^12600) < 3793.
 constexpr std::size_t kMostDigits = 4000;
 
 /// Returns the square of a length. Precondition: the length is finite and >= 0.
@@ -176,7 +176,7 @@ Fraction square_of(double length);
 /// fraction is not in lowest terms.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// Returns a double that is at least the root, but hardly more; infinity if no finite double is.
+/// Returns the root or a slightly larger double; infinity if the root exceeds all finite doubles.
 double root_above(const Fraction& fraction);
 
 /// A length, given by its square.

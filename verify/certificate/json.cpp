@@ -22,8 +22,8 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile 
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
 
-/// Checks only the syntax. Limits the number of values and the depth before anything is built, so
-/// that memory stays in proportion to the text.
+/// Checks only the syntax. Limits the number of values and the depth of nesting before any value is
+/// built, so that memory is O(text).
 class Syntax : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return count(); }
@@ -76,7 +76,7 @@ class Syntax : public nlohmann::json_sax<Json> {
 };
 
 /// Reads the values of an object by their keys. If a value has the wrong type, throws Error naming
-/// the file and the path of the value, as in unattested.views[1].width.
+/// the file and the path of the value, such as unattested.views[1].width.
 class Reader {
  public:
   /// name: the file. place: the path of the object; empty for the whole certificate. Throws Error
@@ -176,7 +176,7 @@ Tile read_tile(const Reader& in) {
   };
   place("from", tile.from);
   place("to", tile.to);
-  // If tiles could run backwards, tiles that follow each other could cover a place twice.
+  // If a tile could end before it begins, consecutive tiles could cover a place twice.
   if (!(tile.from <= tile.to)) in.fail("tile.to is less than tile.from");
   return tile;
 }

@@ -67,7 +67,7 @@ class CsvReader {
       line.remove_prefix(end);
       return out;
     }
-    std::string out;  // two quotes mean one quote
+    std::string out;  // two quotes in a row stand for one quote
     for (;;) {
       const std::size_t end = line.find('"');
       if (end == std::string_view::npos) fail("the quotes of a cell are not closed on their line");
@@ -83,7 +83,6 @@ class CsvReader {
   std::uint64_t line_ = 0;
 };
 
-/// The names of the columns that are read.
 constexpr std::array kNames = {"object_a",   "triangle_a", "object_b",
                                "triangle_b", "frame",      "neighbours"};
 constexpr std::size_t kNeeded = 4, kFrame = 4, kNeighboursColumn = 5;

@@ -15,7 +15,7 @@
 namespace farcull {
 
 /// Returns the line object_a,triangle_a,object_b,triangle_b with its newline. self: true if an
-/// object of the scene is tested against itself; then there is a fifth column `neighbours`.
+/// object of the scene is tested against itself; then the line has a fifth column `neighbours`.
 std::string pair_list_header(bool self);
 
 /// Numbers for a scene that is a part of a whole scene. Lists name objects and triangles by their
@@ -50,7 +50,7 @@ std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs);
 std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs,
                            const ListNumbers* numbers = nullptr);
 
-/// A row of a list, as the file has it.
+/// A row of a list, as read from the file.
 struct ListedPair {
   std::uint64_t line = 0;  // 1-based
   std::uint32_t frame = 0;
@@ -67,7 +67,7 @@ struct GivenList {
 
 /// Reads CSV. The first line names the columns object_a, triangle_a, object_b and triangle_b in any
 /// order; it may name `frame`, `neighbours` and other columns. Each further line is a pair. Commas
-/// divide cells; cells may be in double quotes; lines end with LF or CR LF; empty lines are
+/// separate cells; cells may be in double quotes; lines end with LF or CR LF; empty lines are
 /// skipped. Throws Error naming `name`, the line and a remedy in these cases: a column is missing
 /// or named twice, a line has more or fewer cells than the first line, a cell is no whole number.
 GivenList read_pair_list(std::string_view text, const std::string& name);
@@ -79,7 +79,7 @@ struct ListDifferences {
                                  // or with a wrong entry in `neighbours`
   std::uint64_t missing = 0;     // number of pairs that meet and are in no row
   std::uint64_t wrong_line = 0;  // line of the first wrong row
-  std::string wrong_reason;      // why the first wrong row is wrong, as in "the pair is disjoint"
+  std::string wrong_reason;      // why the first wrong row is wrong, like "the pair is disjoint"
   std::optional<TrianglePair> wrong_pair;    // none if the row names one triangle twice
   std::optional<TrianglePair> missing_pair;  // the first missing pair in sorted order
 

@@ -1,6 +1,6 @@
-// A tile of a scene: a half-open interval of one axis. This file says which triangles meet a tile,
-// and which pairs of triangles belong to a tile. docs/tiles.md proves that each pair belongs to
-// exactly one of the tiles of an axis, and that both triangles of the pair meet this tile.
+// A tile of a scene: a half-open interval of one axis. This file defines which triangles meet a
+// tile, and which pairs of triangles belong to a tile. docs/tiles.md proves that each pair belongs
+// to exactly one of the tiles of an axis, and that both triangles of the pair meet this tile.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Opens an EGL device without a window system and makes its context current for one scope at a
-// time.
+// Opens an EGL device without a window system. Makes its context current for the lifetime of a
+// GlCurrent object.
 #include "core/gl/base/context.h"
 
 #include <epoxy/egl.h>
@@ -25,8 +25,8 @@ struct EglContext {
   EGLContext context = EGL_NO_CONTEXT;
 
   ~EglContext() {
-    // The display stays initialized: EGL has one per device, and another context of this process
-    // may be using it.
+    // The display stays initialized: EGL has one display per device, and another context of this
+    // process may be using it.
     if (context == EGL_NO_CONTEXT) return;
     if (eglGetCurrentContext() == context)
       eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -47,15 +47,15 @@ bool has_word(const std::string& list, const std::string& word) {
   return (" " + list + " ").find(" " + word + " ") != std::string::npos;
 }
 
-// driver_threads() is the larger of two counts. The threads with llvmpipe's name may be too few: a
-// thread gets its name a moment after its start. LP_NUM_THREADS may be wrong: another user of Mesa
-// in this process may have opened the display when it had another value.
+// driver_threads() returns the larger of two counts, since both can be too small. A thread gets the
+// name llvmpipe a moment after its start. LP_NUM_THREADS may have changed since another user of
+// Mesa in this process opened the display.
 
-// Reads LP_NUM_THREADS as llvmpipe does. If it is not set, returns the number of cores, or 0 for a
-// single core. Call this before the first display is opened: llvmpipe reads the variable then.
+// Returns LP_NUM_THREADS as llvmpipe reads it. If it is not set, returns the number of cores, or 0
+// for a single core. Must be called before the first display is opened, when llvmpipe reads it.
 int asked_threads() {
   static const int asked = [] {
-    constexpr long kMost = 16;  // threads of llvmpipe in Mesa 22
+    constexpr long kMost = 16;  // maximum number of llvmpipe threads in Mesa 22
     const long cores = static_cast<long>(std::thread::hardware_concurrency());
     long threads = cores > 1 ? cores : 0;
     if (const char* const text = std::getenv("LP_NUM_THREADS")) {
@@ -81,9 +81,9 @@ int running_threads() {
   return threads;
 }
 
-// Throws Error if too little address space is left for Mesa's software device, as under ulimit -v.
-// The device needs room for its libraries with LLVM, and a stack and a heap for each of up to 16
-// threads. With too little room it crashes, or seems not to be installed.
+// Throws Error if too little address space is left for Mesa's software device (as under ulimit -v).
+// The device needs memory for its libraries, such as LLVM, and a stack and a heap for each of up to
+// 16 threads. With less memory it crashes, or seems not to be installed.
 void require_memory() {
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
@@ -99,8 +99,8 @@ void require_memory() {
   ::munmap(reserved, bytes);
 }
 
-// Throws Error unless libEGL exists and its client extensions can list and open devices.
-// libepoxy aborts the process if libEGL is missing, so epoxy_has_egl() is asked first.
+// Throws Error unless libEGL exists and its client extensions can list and open devices. Calls
+// epoxy_has_egl() first, because libepoxy aborts the process if libEGL is missing.
 void require_egl() {
   asked_threads();
   require_memory();
@@ -141,12 +141,12 @@ GlDevice describe(EGLDeviceEXT device, int index) {
 
 constexpr const char* kNoMemory = "there is not enough memory for it (EGL_BAD_ALLOC)";
 
-// Returns `reason`, or kNoMemory if EGL's error says that memory is missing.
+// Returns kNoMemory if EGL's last error is EGL_BAD_ALLOC, else `reason`.
 std::string with_cause(const char* reason) {
   return eglGetError() == EGL_BAD_ALLOC ? kNoMemory : reason;
 }
 
-// The device of the current context.
+// Returns the properties of the current context's device.
 GlInfo read_info(const std::string& kind) {
   GlInfo info;
   info.kind = kind;
@@ -170,7 +170,7 @@ GlInfo read_info(const std::string& kind) {
   return info;
 }
 
-// Makes a context on the device and makes it current. Returns why this failed, or an empty text.
+// Makes a context on the device and makes it current. Returns an empty text, or why this failed.
 std::string open(EGLDeviceEXT device, EglContext& out) {
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
@@ -231,7 +231,7 @@ struct GlCurrent::Before {
     if (context != EGL_NO_CONTEXT) {
       eglBindAPI(api);
       if (eglMakeCurrent(display, draw, read, context)) return;
-      // The previous context was destroyed meanwhile, so no context is current.
+      // The previous context has been destroyed, so no context becomes current.
     }
     if (ours != EGL_NO_DISPLAY || now != EGL_NO_DISPLAY) {
       eglBindAPI(EGL_OPENGL_API);
@@ -266,7 +266,7 @@ GlCurrent::GlCurrent(const GlContext& context) {
 GlCurrent::~GlCurrent() = default;
 
 GlContext::GlContext(const std::string& device) {
-  const FloatingPointGuard guard;  // drivers are loaded here, perhaps built with -ffast-math
+  const FloatingPointGuard guard;  // drivers loaded below may use -ffast-math
   require_egl();
   const GlCurrent before;
   const std::vector<EGLDeviceEXT> list = devices();
@@ -309,14 +309,14 @@ GlContext::~GlContext() = default;
 const GlInfo& GlContext::info() const { return handles_->info; }
 
 bool GlContext::hardware_listed() {
-  const FloatingPointGuard guard;  // drivers are loaded here, too
+  const FloatingPointGuard guard;  // drivers are loaded below
   require_egl();
   return std::ranges::any_of(
       devices(), [](EGLDeviceEXT device) { return describe(device, 0).kind == "hardware"; });
 }
 
 std::vector<GlDevice> GlContext::list_devices() {
-  const FloatingPointGuard guard;  // drivers are loaded here, too
+  const FloatingPointGuard guard;  // drivers are loaded below
   require_egl();
   const GlCurrent before;
   std::vector<GlDevice> out;
@@ -335,7 +335,7 @@ std::vector<GlDevice> GlContext::list_devices() {
 }
 
 int driver_threads(const std::string& renderer) {
-  // If Mesa's zink (OpenGL on Vulkan) draws with llvmpipe, its renderer text names llvmpipe.
+  // Mesa's zink (OpenGL on Vulkan) can draw with llvmpipe. Its renderer text then names llvmpipe.
   if (renderer.find("llvmpipe") == std::string::npos) return 0;
   return std::max(asked_threads(), running_threads());
 }

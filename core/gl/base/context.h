@@ -1,4 +1,4 @@
-// A headless OpenGL context through EGL: no window system, the device chosen by name or number.
+// A headless OpenGL context through EGL, without a window system, on a chosen device.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@ struct GlDevice {
   int index = 0;
   std::string kind;                       // "software" or "hardware"
   std::string extensions;                 // EGL device extensions
-  std::string drm;                        // device file, if it has one
+  std::string drm;                        // device file, if the device has one
   bool usable = false;                    // farcull can make a context on this device
-  std::string vendor, renderer, version;  // texts of the context
-  std::string problem;                    // why it is not usable
+  std::string vendor, renderer, version;  // strings of its OpenGL context
+  std::string problem;                    // why the device is not usable
 };
 
-/// The device of a context; recorded with every result.
+/// The device of a context. Every result is recorded with it.
 struct GlInfo {
   std::string kind;  // "software" or "hardware"
   std::string vendor, renderer, version, glsl;
@@ -31,13 +31,13 @@ struct GlInfo {
 };
 
 /// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent object of it lives. A thread can use several contexts one after the other. Several
-/// threads can use one context, one thread at a time.
+/// GlCurrent object for it exists. A thread may use several contexts one after the other. Several
+/// threads may use one context, one thread at a time.
 class GlContext {
  public:
-  /// device: "" (hardware first, then software), "hardware", "software" or a number of
-  /// list_devices(). Throws Error if there is no EGL or no such device, or if its OpenGL is too
-  /// old. Afterwards the context that was current in this thread is current again.
+  /// device: "" (hardware first, then software), "hardware", "software" or an index of
+  /// list_devices(). Throws Error if EGL or the device is missing, or if its OpenGL is too old.
+  /// Afterwards the context that was current in this thread is current again.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -45,7 +45,7 @@ class GlContext {
 
   const GlInfo& info() const;
 
-  /// Returns all devices. Tries to make a context on each device. Throws Error without EGL.
+  /// Returns all devices, and tries to make a context on each one. Throws Error without EGL.
   static std::vector<GlDevice> list_devices();
   /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
   static bool hardware_listed();
@@ -56,9 +56,9 @@ class GlContext {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Makes a context current in this thread while the object lives. Then restores the previous state:
-/// no context, another GlContext, or a context of the caller with its surfaces and its rendering
-/// API. Objects may be nested. All code that calls GL holds such an object.
+/// Makes a context current in this thread while the object exists. The destructor restores the
+/// previous state: no context, another GlContext, or a context of the caller with its surfaces and
+/// its rendering API. Objects may be nested. All code that calls GL holds such an object.
 class GlCurrent {
  public:
   /// Throws Error if the context cannot be made current: another thread is using it, or a
@@ -71,23 +71,23 @@ class GlCurrent {
  private:
   friend class GlContext;
   struct Before;
-  GlCurrent();                      // remembers what is current, and changes nothing
+  GlCurrent();                      // saves the current state, and changes nothing
   std::unique_ptr<Before> before_;  // null: the context was already current
 };
 
-/// Returns the number of threads with which Mesa's llvmpipe draws in this process: the threads that
-/// run, or the number that LP_NUM_THREADS asks for, whichever is larger. Returns 0 if the renderer
-/// does not use llvmpipe. Such threads may write to freed memory (docs/drivers.md), so a device
+/// Returns the number of threads with which Mesa's llvmpipe draws in this process: the number of
+/// running threads, or the number set by LP_NUM_THREADS, whichever is larger. Returns 0 if the
+/// renderer is not llvmpipe. Such threads may write to freed memory (docs/drivers.md), so a device
 /// with such threads guarantees nothing (assumption A10).
 int driver_threads(const std::string& renderer);
 
-/// Returns a text on the risk of the driver's threads and the remedy, without a full stop. Returns
-/// an empty text if driver_threads() is 0.
+/// Returns a text about the risk of the driver's threads and the remedy, without a full stop.
+/// Returns an empty text if driver_threads() is 0.
 std::string risk_of_threads(const std::string& renderer);
 
-/// Reads GL's error flags and the reset status. Throws Error naming `stage` unless both are clean
-/// (assumption A7), or if the driver has left this thread with a floating-point environment other
-/// than the one that the proofs assume.
+/// Throws Error naming `stage` if GL reports an error or a reset (assumption A7). Also throws if
+/// this thread's floating-point environment is not the one that the proofs assume, because the
+/// driver may have changed it.
 void check_gl(const std::string& stage);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Each fault replaces the entry points that it needs. The thread-local `plan` says which call
-// fails. In threads without a plan, a replacement passes the call on to the driver.
+// Each kind of fault replaces the entry points that it needs. The thread-local `plan` says which
+// call fails. In threads without a plan, a replacement calls the driver.
 #include "core/gl/base/driver_fault.h"
 
 #include <optional>
@@ -13,9 +13,9 @@ using Kind = DriverFaultKind;
 
 struct Plan {
   Kind kind;
-  std::optional<std::size_t> strike;  // number of the call that fails; empty: none
-  std::size_t calls = 0;              // counted since strike()
-  bool query_lost = false;            // the current query was not begun, so it must not be ended
+  std::optional<std::size_t> strike;  // number of the failing call; empty: none
+  std::size_t calls = 0;              // number of calls since strike()
+  bool query_lost = false;            // glBeginQuery was lost, so glEndQuery must not be called
 
   bool now() { return strike && calls++ == *strike; }
 };
@@ -32,9 +32,9 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// Every compute program of farcull has the line kEnd, which ends an invocation when its work items
-// run out. kEarlierEnd ends the invocation also before item far_lost_item - 1. If far_lost_item is
-// 0, it ends no invocation early.
+// Every compute program of farcull contains the line kEnd, which ends an invocation after its last
+// work item. kEarlierEnd replaces kEnd. It also ends the invocation before work item far_lost_item
+// - 1. If far_lost_item is 0, no invocation ends early.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";
@@ -84,7 +84,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
     text.replace(at, from.size(), to);
 }
 
-// gl_program() passes one source string, ended by 0.
+// Changes a source only if it is one null-terminated string, as gl_program() passes it.
 void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);

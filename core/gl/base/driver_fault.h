@@ -1,7 +1,7 @@
-// Simulated faults of a GL driver. With them `farcull doctor` and the tests check that faults are
-// noticed (assumption A7). While an object lives, failing functions replace GL's entry points
-// (libepoxy's function pointers), and shader sources are changed on their way to the compiler. Only
-// core/gl and its tests include this.
+// Simulated faults of a GL driver. `farcull doctor` and the tests use them to check that faults are
+// noticed (assumption A7). While a DriverFault object exists, failing functions replace GL's entry
+// points (libepoxy's function pointers). Shader sources are changed before the driver compiles
+// them. Only core/gl and its tests include this.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -18,8 +18,8 @@ namespace farcull {
 template <auto* Pointer, class Function = std::remove_pointer_t<decltype(Pointer)>>
 class GlEntryPoint;
 
-/// Puts `replacement` in place of *Pointer for the lifetime of the object. An entry point can have
-/// only one such object at a time. The replacement calls the driver by original().
+/// Sets *Pointer to `replacement` for the lifetime of the object. An entry point can have only one
+/// such object at a time. The replacement calls the driver by original().
 template <auto* Pointer, class Result, class... Arguments>
 class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
  public:
@@ -37,8 +37,8 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
   static Result original(Arguments... arguments) {
     if (resolved_) return original_(arguments...);
-    // On the first call libepoxy looks up the driver's function and writes it to *Pointer. Later
-    // calls do not touch *Pointer, since other threads may be calling it.
+    // The first call restores *Pointer, so that libepoxy looks up the driver's function and writes
+    // it there. Later calls do not change *Pointer, since other threads may be calling it.
     *Pointer = original_;
     struct Again {
       ~Again() {
@@ -52,7 +52,7 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
  private:
   static inline Function original_ = nullptr, replacement_ = nullptr;
-  static inline std::atomic<bool> resolved_ = false;  // original_ is the driver's own function
+  static inline std::atomic<bool> resolved_ = false;  // original_ is the driver's function
 };
 
 enum class DriverFaultKind {
@@ -64,9 +64,9 @@ enum class DriverFaultKind {
   blind_queries,       // all occlusion queries answer zero, from strike() on
 };
 
-/// Makes GL calls fail in the thread that made the object. Calls of other threads reach the driver
-/// unchanged. The constructor waits until no other object exists. For unfinished_item, compile the
-/// programs while the object lives.
+/// Makes GL calls fail in the thread that constructs the object. Calls of other threads reach the
+/// driver unchanged. The constructor waits until no other DriverFault exists. For the kind
+/// unfinished_item, programs must be compiled while the object exists.
 class DriverFault {
  public:
   explicit DriverFault(DriverFaultKind kind);

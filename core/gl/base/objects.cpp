@@ -1,4 +1,4 @@
-// Compiles programs, and asks GL after every binding and allocation whether it took effect.
+// Compiles programs. Checks after every binding and allocation that GL carried it out.
 #include "core/gl/base/objects.h"
 
 #include <algorithm>
@@ -11,18 +11,18 @@ namespace {
 
 constexpr const char* kReport = "report this driver's log with the output of `{doctor}`";
 
-// Macros for what GLSL and C++ write differently, such as out parameters. core/base/glsl_shim.h
-// defines them for C++, so kernels compile in both languages.
+// Macros that hide differences between GLSL and C++, such as out parameters. core/base/glsl_shim.h
+// defines the same macros for C++, so kernels compile in both languages.
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
     "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n#define FAR_CONSTANT const float\n"
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
-// FAR_AT is the element `index` of an array at the end of a storage block, or the last element if
-// `index` is too large. A lost upload, binding or uniform is noticed only when results are read.
-// Until then an index that comes from a buffer may be wrong, and must not lead outside the buffer.
-// The storage buffers of farcull are never empty.
+// FAR_AT is element `index` of the array at the end of a storage block. If `index` is too large,
+// FAR_AT is the last element. A lost command is noticed only when results are read. Before that, an
+// index read from a buffer may be wrong, and must not lead outside the array. The storage buffers
+// of farcull are never empty.
 constexpr const char* kElement =
     "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
 
@@ -36,8 +36,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Binds the buffer `name`. Throws Error if GL says that another buffer is bound: an update would go
-// to that buffer.
+// Binds the buffer `name`. Throws Error if GL reports another binding, because the next update
+// would change another buffer.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;
@@ -52,7 +52,7 @@ void throw_lost(const std::string& stage, const std::string& reason) {
   throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
 }
 
-// The numbers look random, so it is unlikely that a few of them cancel in a sum. Each step is a
+// Returns pseudorandom numbers, so that a sum of a few of them is unlikely to be 0. Each step is a
 // bijection, so the first 2^32 numbers are all different.
 std::uint32_t gl_number() {
   static std::atomic<std::uint32_t> last{0};

@@ -1,5 +1,5 @@
-// The GL objects that core/gl shares: names that are deleted with their owners, programs, storage
-// buffers, and the echo (a checksum that reveals lost commands). For core/gl and its tests alone.
+// GL objects of core/gl: owned names, programs, storage buffers, and the echo (a checksum that
+// reveals lost commands). Only core/gl and its tests include this.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// Throws Error naming the GL stage: a command was lost, and `reason` says how it was noticed.
+/// Throws Error naming the GL stage: a command was lost. reason: what shows the loss.
 [[noreturn]] void throw_lost(const std::string& stage, const std::string& reason);
 
 template <void (*Delete)(GLuint)>
@@ -39,8 +39,7 @@ class GlName {
   GLuint name_ = 0;
 };
 
-/// Deletes one object by a GL function that deletes several. Delete: a function pointer of
-/// libepoxy.
+/// Deletes one object. Delete: libepoxy's pointer to a GL function that deletes several objects.
 template <auto* Delete>
 void delete_one(GLuint name) {
   (*Delete)(1, &name);
@@ -61,7 +60,7 @@ Object gl_make(void (*generate)(GLsizei, GLuint*)) {
   return Object(name);
 }
 
-/// A texture of one level, bound, with the nearest filter.
+/// Makes a texture of one level with the nearest filter, and leaves it bound.
 GlTexture gl_texture(GLenum format, int width, int height);
 
 struct ShaderText {
@@ -73,26 +72,26 @@ struct ShaderText {
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 
-/// Gives a shader storage buffer new contents. Its size is at least 16 bytes, so that it can be
-/// bound.
+/// Replaces the contents of a shader storage buffer. The new size is at least 16 bytes, so that the
+/// buffer can be bound.
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
 
 /// Returns a number that is unique in this process (for the first 2^32 calls).
 std::uint32_t gl_number();
 
-/// Bytes of a storage buffer before its data: its tag and three zero words.
+/// Size of the head of a storage buffer, before its data: the tag and three zero words.
 constexpr std::size_t kTagBytes = 16;
 
-/// A shader storage buffer that grows and never shrinks. It begins with a tag, a number that no
-/// other buffer of the process has. Programs add the tag to their echo, so the echo shows which
-/// buffer was bound. Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the
-/// data. Every function asks GL whether the buffer is bound before it touches contents, so that a
-/// lost binding cannot spoil another buffer. Each function throws Error if GL fails.
+/// A shader storage buffer that grows and never shrinks. It begins with a tag: a number that no
+/// other buffer of the process has. Programs include the tag in their echo, so the echo shows which
+/// buffer was bound. Programs declare the buffer as { uvec4 tag; T data[]; }. Offsets are relative
+/// to the data. Each function checks the binding before it accesses contents, so that a lost
+/// binding cannot damage another buffer. Each function throws Error if GL fails.
 class GlStore {
  public:
-  /// Makes room for `wanted` bytes of data. If the store has to grow, its new size is `wanted` or
-  /// 1.5 times the old size (at most `most`), whichever is larger. Returns true if the store has
-  /// grown. Its contents are then undefined. If this throws, the store is unchanged.
+  /// Makes room for `wanted` bytes of data. If the store has to grow, its new size is the larger of
+  /// `wanted` and 1.5 times the old size (but at most `most`). Returns true if the store has grown;
+  /// its contents are then undefined. If this throws, the store is unchanged.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
   /// Sets the first `bytes` bytes of data, a multiple of 4, to 0.
@@ -101,7 +100,7 @@ class GlStore {
 
   GLuint name() const { return name_; }
   std::uint32_t tag() const { return tag_; }
-  std::size_t bytes() const { return bytes_; }  // of data
+  std::size_t bytes() const { return bytes_; }  // size of the data
 
  private:
   GlBuffer name_;
@@ -109,13 +108,13 @@ class GlStore {
   std::size_t bytes_ = 0;
 };
 
-// The echo (assumption A7) is a hash that the device returns: of the values that a program read,
-// and of the data that were sent. A wrong echo reveals a lost command. kEchoGlsl computes it in
-// shaders.
+// The echo (assumption A7) is a hash that the device returns. It covers the values that a program
+// read, or the data on the device. A wrong echo reveals a lost command. kEchoGlsl is the hash in
+// GLSL.
 
-/// Mixes a word with its place (the finalizer of MurmurHash3). The result is a bijection of the
-/// word, and each bit of the word can change every bit of the result. So changes of a few words
-/// hardly ever cancel in a sum.
+/// Hashes a word with its position, by the finalizer of MurmurHash3. For each position the hash is
+/// a bijection, and each bit of the word can change every bit of the result. So if a few words
+/// change, the sum of their hashes very probably changes.
 inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   std::uint32_t mixed = word ^ place * 0x9e3779b9u;
   mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
@@ -123,7 +122,7 @@ inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   return mixed ^ mixed >> 16;
 }
 
-/// For shaders that write a hash of the values they read. FAR_ADD adds a mixed word to `sum`.
+/// GLSL code for the hash of values that a shader reads. FAR_ADD adds a hashed word to `sum`.
 inline constexpr char kEchoGlsl[] = R"glsl(
 uint far_mixed(uint word, uint place) {
   uint mixed = word ^ place * 0x9e3779b9u;
@@ -134,10 +133,10 @@ uint far_mixed(uint word, uint place) {
 #define FAR_ADD(place, word) sum += far_mixed((word), (place));
 )glsl";
 
-/// The sum of words, each mixed with its place.
+/// The sum of words, each hashed with its position.
 struct GlEcho {
   std::uint32_t sum = 0;
-  std::uint32_t place = 0;  // place of the next word
+  std::uint32_t place = 0;  // position of the next word
 
   template <class Number, std::size_t N>
   void add(const std::array<Number, N>& words) {

@@ -1,15 +1,15 @@
-// Stores or asks one fragment, by these defines:
-// FAR_PROXY: the solid's function (in front of this text) computes the depth: the entry when
-// storing, the exit when asking.
-// FAR_ASK: asks instead of storing. Its value is a slack (kAskedBehind): how far the asked depth is
-// behind the mapped exit.
-// FAR_FLAGS: an asked fragment that is seen writes this pass's serial number to its slot's flag.
-// For proxies this program compares depths, for triangles the depth test does. Without FAR_FLAGS
-// an occlusion query decides.
-// FAR_VALUE: also writes out the fragment's depth in px.
+// Draws one fragment: stores its depth, or tests it against the stored depth. The defines:
+// FAR_PROXY: the solid's function (placed before this text) computes the depth. The program uses
+// the entry depth for storing and the exit depth for testing.
+// FAR_ASK: tests instead of storing. Its value is the slack (kAskedBehind) by which the tested
+// depth lies behind the mapped exit.
+// FAR_FLAGS: a fragment that passes the test writes this pass's serial number to the flag of its
+// slot. This program compares the depths of proxies; the depth test compares those of triangles.
+// No FAR_FLAGS: an occlusion query tells whether a fragment passed.
+// FAR_VALUE: also writes the depth in px.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
-uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
-uniform float u_scale;   // of the depth map
+uniform vec2 u_centre;   // pixel-space origin inside the render target, whole numbers
+uniform float u_scale;   // scale of the depth map
 
 flat in uint v_slot;
 flat in uint v_fixed;
@@ -61,7 +61,7 @@ void main() {
     precise float mapped = 0.5 + z;
     depth = clamp(mapped, 0.25, 0.75);
 #ifdef FAR_ASK
-    // Another program mapped the stored depth, and may have rounded differently.
+    // Another program mapped the stored depth, and may have rounded the depth differently.
     precise float behind = depth + FAR_ASK;
     depth = behind;
 #endif

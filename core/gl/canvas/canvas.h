@@ -1,6 +1,6 @@
-// The canvas on OpenGL 4.3: a depth texture, proxies or triangles fetched from storage buffers, and
-// the full-visibility query either as an occlusion query per slot or as a flag that the fragment
-// program raises.
+// The canvas on OpenGL 4.3. It has a depth texture, and reads proxies or triangles from storage
+// buffers. To test visibility, it uses either an occlusion query for each slot, or a flag for each
+// slot that the fragment program sets.
 #pragma once
 
 #include <bit>
@@ -15,14 +15,14 @@
 namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
-/// How the canvas learns whether an asked slot is seen.
-/// - flags: a fragment that is seen raises its slot's flag. For proxies the shader compares depths
-///   (float32 only: with a 24-bit texture, equal depths may differ). For triangles at fixed depth,
+/// How the canvas decides whether a slot is seen in a visibility test (Verb::ask).
+/// - flags: a fragment that is seen sets its slot's flag. The shader compares the depths of proxies
+///   (float32 only: equal depths may differ in a 24-bit texture). For triangles at fixed depth,
 ///   early fragment tests decide.
-/// - occlusion: a GL_ANY_SAMPLES_PASSED query per slot, as published.
+/// - occlusion: a GL_ANY_SAMPLES_PASSED query for each slot, as published.
 enum class QueryMode { flags, occlusion };
 
-/// Returns the define that makes canvas.frag ask. Its value is the slack `behind`, as bits.
+/// Returns the define for a canvas.frag that tests visibility. behind: the slack, as exact bits.
 inline std::string ask_define(float behind = kAskedBehind) {
   return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
 }
@@ -30,10 +30,10 @@ inline std::string ask_define(float behind = kAskedBehind) {
 struct GlCanvasOptions {
   DepthFormat depth_format = DepthFormat::float32;
   QueryMode query = QueryMode::flags;
-  /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
-  /// GL_INTEL_conservative_rasterization.
+  /// True: triangles have a fragment in each pixel that they touch. Needs GL_NV_conservative_raster
+  /// or GL_INTEL_conservative_rasterization.
   bool conservative = false;
-  /// A storage block has at most this many bytes; 0: the device's own limit.
+  /// Largest size of a storage block in bytes. 0: the device's own limit.
   long storage_limit = 0;
 };
 
@@ -43,9 +43,9 @@ class GlCanvas final : public Canvas {
  public:
   /// `mode` and `solid` are those of the fattener that makes the drawables. Throws Error if the
   /// options contradict each other or the device refuses. The context must outlive the canvas. Each
-  /// call makes the context current. After an exception of begin(), run(), samples() or depths(),
-  /// all data on the device are dropped. Then the other functions throw std::logic_error until the
-  /// next begin().
+  /// call makes the context current. If begin(), run(), samples() or depths() throws, all data on
+  /// the device are deleted. The other functions then throw std::logic_error until the next
+  /// begin().
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
@@ -70,7 +70,7 @@ class GlCanvas final : public Canvas {
   GlCanvasOptions options_;
   RasterLimits limits_;
   std::unique_ptr<CanvasState> state_;  // null after a failure
-  CanvasWork earlier_;                  // work of states that were dropped
+  CanvasWork earlier_;                  // work of states that were deleted
 };
 
 std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,

@@ -1,15 +1,15 @@
-// Fetches an element for each draw of a batch (draws of one step that read one element buffer) and
-// places it. FAR_PROXY: an element is seven vec4, a quadrilateral of two triangles that share the
-// corners of a diagonal. Otherwise: three vec4, a triangle.
-// FAR_ECHO: the buffers have tags. A batch begins with a head: this pass's serial number, and the
-// batch's word of the report. The first vertex of the batch writes an echo to that word: a checksum
-// (core/gl/base/objects.h) of what both stages read.
+// Reads an element for each draw of a batch, and places it. A batch is a sequence of draws of one
+// step that read one element buffer. FAR_PROXY: an element is seven vec4, a quadrilateral of two
+// triangles. Otherwise an element is three vec4, a triangle.
+// FAR_ECHO: each buffer begins with a tag. A batch begins with a head: this pass's serial number,
+// and the report's word for the batch. The batch's first vertex writes an echo to that word. The
+// echo is a checksum of the values that both shaders read (core/gl/base/objects.h).
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
 layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
-uniform uint u_program;  // a number that no other program of the process has
-uniform ivec4 u_window;  // this and the later uniforms of FAR_ECHO are those of the fragment stage
+uniform uint u_program;  // unique among the programs of the process
+uniform ivec4 u_window;  // from here to #else: uniforms of canvas.frag, read here for the echo
 uniform vec2 u_centre;
 #ifdef FAR_FLAGS
 layout(std430, binding = 2) buffer Flags { uvec4 flags_tag; uint flags[]; };
@@ -22,14 +22,14 @@ layout(std430, binding = 1) readonly buffer Draws { uvec2 draws[]; };  // elemen
 #endif
 
 uniform vec2 u_to_ndc;   // 2 / viewport side: powers of two, so the product is exact
-uniform float u_scale;   // of the depth map
+uniform float u_scale;   // scale of the depth map
 
 flat out uint v_slot;
 flat out uint v_fixed;  // 1: the canvas's own element: fixed depth, drawn outside the window, too
 #ifdef FAR_PROXY
 flat out vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
 #endif
-// A control item must be asked at exactly the depth that another program stored.
+// A control item must be tested at exactly the depth that another program stored.
 invariant gl_Position;
 
 #ifdef FAR_ECHO
@@ -80,7 +80,7 @@ void main() {
 #endif
   v_slot = item.y;
 #ifdef FAR_ECHO
-  // Reads outside the condition, so llvmpipe reads once for all vertices that it computes together.
+  // Computed outside the `if`, so that llvmpipe reads once for all vertices of a vector.
   uint word = head.y, echo = far_echo();
   if (gl_VertexID == 0) FAR_AT(report, word) = echo;
 #endif

@@ -1,7 +1,7 @@
-// Step 0 sums the words of a buffer, each mixed with its place. Step 1 packs flags, one word each,
-// into bits: a flag is raised if it holds this pass's serial number. The report begins with the
-// number of finished work items and the sum, both over all dispatches since the host set them to 0.
-// Each dispatch writes its echo to a word of its own in the report.
+// Step 0 sums the words of a buffer, each hashed with its position. Step 1 packs flags, one word
+// each, into bits: a bit is 1 if its flag equals this pass's serial number. The report begins with
+// the number of finished work items and the sum of step 0. The host sets both to 0; each dispatch
+// adds to them. Each dispatch writes its echo to its own word of the report.
 layout(local_size_x = 64) in;
 #if FAR_STEP == 0
 layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uvec4 from[]; };
@@ -10,10 +10,10 @@ layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uint from[]; 
 #endif
 layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
 
-layout(location = 0) uniform uint u_count;       // work items
+layout(location = 0) uniform uint u_count;       // number of work items
 layout(location = 1) uniform uint u_echo;        // word of the report for this dispatch's echo
 layout(location = 2) uniform uint u_serial;
-layout(location = 3) uniform uint u_flags;       // flags in all
+layout(location = 3) uniform uint u_flags;       // number of flags
 layout(location = 4) uniform uint u_bits;        // word of the report where the bits begin
 
 uint far_echo() {

@@ -1,6 +1,6 @@
-// The passes of the GL canvas. A pass is cut into batches of consecutive draws of a step that read
-// the same element buffer. The draw list is sent, and drawn batch by batch. The results are used
-// only if the report, the count of primitives and the control items show that everything ran.
+// The passes of the GL canvas. A batch is a sequence of draws of a step that read one element
+// buffer. A pass uploads its draw list and draws it batch by batch. Its results are used only if
+// the report, the number of primitives and the control items show that every command ran.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Layout {
     out_.serial = gl_number();
     out_.list.assign(kTagBytes / sizeof(GpuDraw), GpuDraw{0, 0});
     out_.slots = pass.slots;
-    // The quad covers the pixel centres of the window and none of the border.
+    // The quad covers the pixel centres of the window, but none of the border.
     const double x = 0.5 * canvas.window.width + 0.25, y = 0.5 * canvas.window.height + 0.25;
     add_quad(-x, -y, x, y, 0.0f);
     own_elements_ = quad_elements();
@@ -57,7 +57,7 @@ class Layout {
  private:
   std::size_t quad_elements() const { return canvas_.mode == DepthMode::fragment ? 1 : 2; }
 
-  // A quadrilateral as elements at a fixed depth: one proxy or two triangles.
+  // Adds a quadrilateral at a fixed depth to the canvas's own elements: a proxy or two triangles.
   void add_quad(double x0, double y0, double x1, double y1, float d) {
     std::vector<float>& own = out_.own;
     const float l = static_cast<float>(x0), b = static_cast<float>(y0), r = static_cast<float>(x1),
@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // A batch begins at a multiple of this many entries.
+      // Pads the list: a batch begins at a multiple of `grain` entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -86,7 +86,7 @@ class Layout {
     ++out_.batches.back().count;
   }
 
-  // pixel: counted along the lower side of the target.
+  // pixel: number of the pixel in the lowest row of the target.
   void push_control(Verb verb, double depth, int pixel, std::uint32_t slot) {
     const double x = pixel - 0.5 * canvas_.target_width, y = -0.5 * canvas_.target_height;
     add_quad(x, y, x + 1, y + 1, static_cast<float>(depth));
@@ -118,14 +118,14 @@ class Layout {
   CanvasPass out_;
   std::size_t own_elements_ = 0;
   std::size_t stores_ = 0;
-  std::size_t index_ = 0;  // of the step
+  std::size_t index_ = 0;  // index of the step
   bool fresh_ = true;      // the next draw starts a batch
 };
 
-// Returns the draw list of `pass`. With `marks`, the list begins with a store and ends with an ask:
-// if the caller's steps do not, a step with only control items is added (state.h). The first store
-// draws this pass's mark, and the first ask looks for the previous pass's mark. Without `marks`, no
-// step is added, and marks are neither drawn nor asked.
+// Returns the draw list of `pass`. With `marks`, the first step stores and the last step tests; if
+// necessary, steps with only control items are added (state.h). The first store draws this pass's
+// mark, and the first test looks for the mark of the previous pass. Without `marks`, no step is
+// added, and no mark is drawn or tested.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -155,7 +155,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
       chunks[c].write(0, chunk.data(), chunk.size());
       work.uploaded_bytes += chunk.size();
     }
-    // The data on the device are compared each time, even if nothing was sent.
+    // Compares the data on the device with `chunk` even if nothing was uploaded.
     report->expect(chunks[c], chunk);
   }
   if (!known) current.bytes.assign(bytes.begin(), bytes.end());
@@ -166,11 +166,12 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   begun = true;
 }
 
-// Selects stored elements with these bytes. Returns false if there are none: the caller must write
-// them. A scene that does not change has one set of elements for each view.
+// Looks for a stored set of elements with these bytes, and makes it the current set. If there is
+// none, returns false, and the caller must write the elements. An unchanged scene needs one set per
+// view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
-  constexpr std::size_t kEarlier = 2;                       // most sets in `earlier`
-  constexpr std::size_t kLargest = std::size_t{128} << 20;  // most bytes of a set in `earlier`
+  constexpr std::size_t kEarlier = 2;                       // maximum of earlier.size()
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // maximum of bytes.size() in `earlier`
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
   };
@@ -191,12 +192,12 @@ bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   return false;
 }
 
-// Returns the number of primitives.
+// Draws all batches. Returns the number of primitives that should be drawn.
 std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   const bool with_flags = options.query == QueryMode::flags;
   std::uint64_t primitives_of_pass = 0;
   std::uint32_t open = kNone;           // slot whose occlusion query is active
-  const CanvasBatch* before = nullptr;  // the batch whose state is set
+  const CanvasBatch* before = nullptr;  // batch that was drawn before
   for (std::size_t r = 0; r < laid.batches.size(); ++r) {
     const CanvasBatch& batch = laid.batches[r];
     primitives_of_pass += batch.count * primitives();
@@ -217,8 +218,8 @@ std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   return primitives_of_pass;
 }
 
-// Draws a batch with an occlusion query for each slot. A slot's draws may be in several batches of
-// a step, so its query stays active until another slot comes or the step ends.
+// Draws a batch with one occlusion query for each slot. The draws of a slot may be in several
+// batches of a step. So its query stays active until the next slot or the end of the step.
 void CanvasState::draw_queries(const CanvasPass& laid, const CanvasBatch& batch,
                                std::uint32_t& open) {
   const GpuDraw* const list = &laid.list[batch.offset + 1];
@@ -244,8 +245,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
-    // Every pass makes new queries. A query that is never issued then has no object, so it cannot
-    // return the result of an earlier pass.
+    // Every pass generates new queries. If glBeginQuery is lost, the new name has no query object,
+    // which cannot return the result of an earlier pass.
     queries.clear();
     while (queries.size() < laid.slots) queries.push_back(gl_make<GlQuery>(glGenQueries));
   }
@@ -289,7 +290,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   return seen;
 }
 
-// Waits for the device, reads the report, and adds the time between stamps 0 and 1 to `work`.
+// Waits for the device and reads the report. Adds the time between stamps 0 and 1 to `work`.
 std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   const std::uint64_t bytes = report->bytes_in_all();
   std::vector<std::uint8_t> seen = report->read(stage);
@@ -306,7 +307,7 @@ std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   return seen;
 }
 
-// Called after report->read(), so it does not wait.
+// Reads the occlusion queries. Does not wait, since report->read() has already waited.
 std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   work.readbacks += slots;
   work.downloaded_bytes += slots * sizeof(GLuint);
@@ -314,14 +315,14 @@ std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;
     glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &result);
-    // If a query was never issued, its name has no object, and `result` keeps its value.
+    // If a query was never issued, its name has no query object, so `result` is unchanged.
     if (result == kNone) throw_lost("pass", "query " + std::to_string(i) + " gave no answer");
     seen[i] = result != 0;
   }
   return seen;
 }
 
-// Draws everything with one program into a target that shares the canvas's depth texture.
+// Draws all of `wanted` with one program into a target that uses the canvas's depth texture.
 void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<Draw>& wanted,
                            GLuint target) {
   const bool store = verb == Verb::store;
@@ -347,7 +348,7 @@ void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<
   float corner[3] = {-1, -1, -1};
   glReadPixels(0, 0, 3, 1, GL_DEPTH_COMPONENT, GL_FLOAT, corner);
   check_gl("samples");
-  // With 24 bits, depth_rounding() is less than 4 steps of 2^-24, which are half a gap.
+  // With 24 bits, depth_rounding() is less than 4 steps of 2^-24, half of kControlGap.
   const double moved = std::abs(corner[0] - (kControlTop - kControlGap));
   if (!(moved <= (options.depth_format == DepthFormat::float32 ? 0x1p-24 : 4 * 0x1p-24)))
     throw_lost("samples", "the control item was not drawn");
@@ -401,7 +402,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   return out;
 }
 
-// Runs `work` with the context and a state. If it fails, drops everything on the device.
+// Makes the context current, and a state if there is none. Runs `work`. On failure, calls forget().
 template <class Work>
 auto GlCanvas::guarded(const Work& work) {
   const GlCurrent current(context_);
@@ -432,7 +433,7 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
   GLint framebuffer[2] = {0, 0};
   glGetIntegerv(GL_MAX_FRAMEBUFFER_WIDTH, &framebuffer[0]);
   glGetIntegerv(GL_MAX_FRAMEBUFFER_HEIGHT, &framebuffer[1]);
-  // A window is up to five pixels wider than its resolution (fit_window), and a side of its
+  // A window is at most five pixels wider than its resolution (fit_window). Each side of its
   // viewport is a power of two.
   const int viewport = static_cast<int>(std::bit_floor(static_cast<unsigned>(info.max_viewport)));
   limits_.max_resolution =
@@ -442,7 +443,7 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
 
 GlCanvas::~GlCanvas() { forget(); }
 
-// Deletes everything on the device, or leaves that to the context if it cannot be made current.
+// Deletes all GL objects. If the context cannot be made current, they are freed with the context.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
   try {
@@ -453,7 +454,7 @@ void GlCanvas::forget() {
       if (open != 0) glEndQuery(target);
     }
     state_.reset();
-    // Ignores errors about the deleted objects. A lost context may report errors without end.
+    // Discards errors about the deleted objects. A lost context may report errors without end.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
   } catch (const Error&) {

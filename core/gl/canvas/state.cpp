@@ -1,6 +1,6 @@
-// Sets the state that a pass draws with. Each value that GL can return is read back after it was
-// set; the echo of each batch covers the rest. Compute programs sum what was sent and pack the
-// flags. The report compares each echo with the one computed here.
+// Sets the GL state for a pass. Values that GL can return are read back at once. The echo of each
+// batch covers the other values. Compute programs sum the uploaded data and pack the flags. The
+// report compares each echo from the device with the echo computed here.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void bind_texture(GLuint name) {
   require(asked(GL_TEXTURE_BINDING_2D) == static_cast<GLint>(name), "the texture");
 }
 
-// Returns the sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
+// Returns the sum of the words of `data` (a multiple of 4 bytes), each hashed with its position.
 std::uint32_t sum_of(std::span<const std::byte> data) {
   std::uint32_t sum = 0;
   const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
@@ -79,7 +79,7 @@ constexpr std::uint32_t kGroup = 64;            // local_size_x of canvas_work.c
 constexpr std::uint32_t kBatches[2] = {64, 4};  // work items of an invocation, by step
 constexpr std::size_t kVec4 = 4 * sizeof(std::uint32_t);
 
-// Places of words in the echo of core/gl/canvas/canvas.vert.
+// Positions of words in the echo of core/gl/canvas/canvas.vert.
 constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11, kReportPlace = 12,
                         kFlagsPlace = 13, kFlagSerialPlace = 14, kTouchingPlace = 15;
 
@@ -87,8 +87,8 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // The range of a piece begins 16 bytes before its data, at a multiple of the alignment. These 16
-  // bytes are the tag for the first piece, and the end of the previous piece for later pieces.
+  // The bound range of a piece begins at a multiple of the alignment, 16 bytes before its data.
+  // These bytes are the tag (first piece) or the end of the previous piece (later pieces).
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -106,7 +106,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this write is lost, read() finds counts that include the counts of the last pass.
+  // If this write is lost, read() notices it: the device then adds to the numbers of the last pass.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -116,7 +116,7 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
                             std::size_t bytes, std::uint32_t tag, std::uint32_t count,
                             std::uint32_t serial, std::uint32_t flags) {
   const std::uint32_t place = kHead + static_cast<std::uint32_t>(echoes_.size());
-  // The uniforms of canvas_work.comp: count, echo, serial, flags, bits.
+  // Values of the uniforms of canvas_work.comp: count, echo, serial, flags, bits.
   const std::array n = {count, place, serial, flags, step == 1 ? place + 1 : 0};
   glUseProgram(programs_[step]);
   for (std::size_t k = 0; k < n.size(); ++k)
@@ -158,7 +158,7 @@ std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   wait_for_device(stage);
   const std::size_t bits = kHead + echoes_.size();
   // An echo can equal this initial value by chance, but the number of finished work items cannot.
-  // So if the read fails silently, that number is wrong, which is noticed below.
+  // So read() notices below if the words were not read.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);
@@ -312,7 +312,7 @@ void CanvasState::clear_depth(float value) const {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-// Sets the state that stays the same during a pass.
+// Sets the state that is constant during a pass.
 void CanvasState::start(float clear) const {
   glBindVertexArray(vertex_array);
   const int vw = viewport_side(window.width), vh = viewport_side(window.height);
@@ -337,7 +337,7 @@ void CanvasState::start(float clear) const {
   clear_depth(clear);
 }
 
-// A pass may have as many steps as triangles, so a step calls only what it needs.
+// A pass may have as many steps as triangles, so a step makes only the GL calls that it needs.
 void CanvasState::set_verb(Verb verb, bool touching) {
   ++work.state_changes;
   const bool ask = verb == Verb::ask, bare = ask && compares_in_shader();
@@ -352,7 +352,7 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Sends the lists of a pass; the device sums them.
+// Uploads the draw list and the canvas's own elements. The device sums them.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
   const auto own = std::as_bytes(std::span(laid.own));
@@ -388,11 +388,11 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   if (with_flags) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFlags, flags.name());
 }
 
-// before: the batch that was bound last, or null. Bindings that `before` has are not made again.
+// Binds the buffers of a batch. before: the last batch, or null. Skips bindings that are unchanged.
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());
-  // Conservative rasterization is off for the canvas's own elements, which are exact without it.
+  // Turns conservative rasterization off for the canvas's own elements, which do not need it.
   const bool own = batch.chunk == kExtras;
   if (conservative != 0 && (before == nullptr || (before->chunk == kExtras) != own))
     set_enabled(conservative, !own, "conservative rasterization");
@@ -426,7 +426,7 @@ void CanvasState::draw(std::size_t first, std::size_t count) {
   }
 }
 
-// Each stamp has a new name. If the stamp is lost, the name has no object, so no old time is read.
+// Each stamp is a new query. If glQueryCounter is lost, no old time is read.
 void CanvasState::stamp(std::size_t place) {
   if (!ticks) return;
   stamps[place] = gl_make<GlQuery>(glGenQueries);

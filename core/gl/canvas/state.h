@@ -1,15 +1,15 @@
-// The canvas on the device: what a pass sends, the report in which the device says what it has read
-// and done (assumption A7), and the state. For core/gl/canvas alone.
+// The canvas on the device: what a pass uploads, the GL state, and the report. In the report the
+// device returns checksums of what it read and did (assumption A7). Only core/gl/canvas includes
+// this.
 //
-// The canvas draws elements besides those of the caller: the quad for kEverywhere, and control
-// items in the first pixels of the render target, outside the window. Control items reveal lost
-// commands:
-// - Pixel 0: the k-th store of a pass leaves the depth kControlTop - k * kControlGap. The next ask
-// has a control item at that depth (half a gap behind it if equal depths are not seen), which is
-// seen only if the store ran.
-// - Pixels 1 and 2: each pass stores a mark (the depth kMark) in one of them, in turn. In the other
-// one it asks, at kAsked, for the mark of the previous pass. That control item is seen, and the
-// pass fails, if the buffer was not cleared in between.
+// The canvas also draws its own elements: the quad for kEverywhere, and control items. Control
+// items are in pixels 0 to 2 of the render target, outside the window. They reveal lost commands:
+// - Pixel 0: the k-th store of a pass leaves the depth kControlTop - k * kControlGap. The next
+//   visibility test has a control item at that depth, or half a gap behind it if equal depths are
+//   not seen. The item is seen only if the store ran.
+// - Pixels 1 and 2: each pass stores a mark (the depth kMark) in one of them, alternately. In the
+//   other pixel, it tests a control item at kAsked. If the previous pass's mark was not cleared,
+//   the item is seen, and the pass fails.
 #pragma once
 
 #include <array>
@@ -45,15 +45,15 @@ struct CanvasBatch {
 };
 constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 
-/// All that a pass sends.
+/// All data that a pass uploads.
 struct CanvasPass {
   std::uint32_t serial = 0;  // unique among the passes of the process
-  /// Two entries in place of the store's tag, then the batches. Each batch begins with a head:
-  /// {serial, word of the report}.
+  /// Two unused entries in the place of the store's tag, then the batches. Each batch begins with a
+  /// head: {serial, word of the report}.
   std::vector<GpuDraw> list;
   std::vector<float> own;  // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  /// Number of slots: of the caller, of control items, and (with marks) one that must stay unseen.
+  /// Number of slots: the caller's, one per control item, and (with marks) one never seen.
   std::uint32_t slots = 0;
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
@@ -63,34 +63,34 @@ struct CanvasPass {
 /// Storage buffer bindings of the programs of the canvas.
 constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2, kReport = 3;
 
-/// A storage buffer for what the device reports. Every batch of draws and every dispatch writes an
-/// echo into it (GlEcho: a checksum of what it read). A dispatch also adds how many of its work
-/// items finished. The buffer also holds the packed flags of a pass.
+/// A storage buffer for the device's report. Every batch of draws and every dispatch writes to the
+/// report an echo (GlEcho: a checksum of the values that were read). A dispatch also adds the
+/// number of its finished work items. The report also holds the packed flags of a pass.
 class CanvasReport {
  public:
-  static constexpr std::uint32_t kHead = 2;  // words before the echoes: items finished, sum
+  static constexpr std::uint32_t kHead = 2;  // words before the echoes: finished items, sum
 
-  /// block: bytes of data in a storage block; alignment: of a storage buffer range, in bytes.
+  /// block: bytes of data in a storage block. alignment: in bytes, of a storage buffer range.
   CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment);
 
-  /// Begins a report of this many batches, at most `dispatches` dispatches and `flags` packed
+  /// Begins a report on `batches` batches, at most `dispatches` dispatches and `flags` packed
   /// flags.
   void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
-  /// The number of dispatches that expect() makes for this many bytes.
+  /// Returns the number of dispatches that expect() makes for this many bytes.
   std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
-  /// Lets the device sum the first data.size() bytes of the store. read() compares this sum with
-  /// the sum of `data` (a multiple of 16 bytes).
+  /// Makes the device sum the first data.size() bytes of the store. read() compares this sum with
+  /// the sum of `data`, whose size is a multiple of 16 bytes.
   void expect(const GlStore& store, std::span<const std::byte> data);
   /// Sets the echo that a batch should write to word kHead + batch.
   void expect_batch(std::size_t batch, std::uint32_t echo) { echoes_[batch] = echo; }
-  /// Lets the device pack `count` flags into bits: 1 if a flag equals `serial`. Call it last before
-  /// read().
+  /// Makes the device pack `count` flags into bits: a bit is 1 if its flag equals `serial`. Must be
+  /// the last call before read().
   void pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count);
-  /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are as expected,
-  /// every work item finished and GL has no error. Returns the flags of pack(), a byte each.
+  /// Waits for the device. Throws Error naming `stage` if an echo or the sum is wrong, a work item
+  /// did not finish or GL reports an error. Returns the flags of pack(), one byte per flag.
   std::vector<std::uint8_t> read(const std::string& stage);
   const GlStore& store() const { return store_; }
-  /// The number of dispatches of all passes. bytes_in_all(): the number of bytes that were read.
+  /// Number of dispatches of all passes, and number of bytes that read() has read.
   std::uint64_t dispatches_in_all() const { return dispatches_; }
   std::uint64_t bytes_in_all() const { return bytes_; }
 
@@ -115,10 +115,10 @@ struct CanvasProgram {
   std::uint32_t echo = 0;    // echo of the uniforms that belong to the window
 };
 
-/// Elements that were sent, so that no elements are sent twice.
+/// Elements on the device, and their bytes, so that the same elements are not uploaded again.
 struct CanvasElements {
   std::vector<GlStore> chunks;
-  std::vector<std::byte> bytes;  // the bytes that were sent to the chunks
+  std::vector<std::byte> bytes;  // the bytes that are stored in the chunks
 };
 
 struct CanvasState {
@@ -133,10 +133,10 @@ struct CanvasState {
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
   int target_width = 0, target_height = 0;
-  bool odd = false;                     // says which of pixels 1 and 2 the next pass marks
+  bool odd = false;                     // false: the next pass marks pixel 2; true: pixel 1
   CanvasElements current;               // elements of the last begin()
   std::vector<CanvasElements> earlier;  // elements of earlier calls, which may be used again
-  std::size_t per_chunk = 0;            // number of elements
+  std::size_t per_chunk = 0;            // largest number of elements in a chunk
   std::size_t block = 0;                // bytes of data in a storage block
   std::size_t alignment = 256;          // alignment of a storage buffer range, in bytes
   GLenum conservative = 0;  // GL capability for conservative rasterization; 0: not wanted
@@ -145,7 +145,7 @@ struct CanvasState {
   std::vector<GlQuery> queries;
   Window window;
   bool ticks = false;             // the device has a clock (GL_TIMESTAMP)
-  std::array<GlQuery, 2> stamps;  // when a pass or an upload began and ended
+  std::array<GlQuery, 2> stamps;  // time at the start and the end of a pass or upload
   CanvasWork work;
 
   CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
@@ -153,9 +153,9 @@ struct CanvasState {
 
   std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
-  // True if the fragment program compares the depth of a proxy with the stored depth, read from the
-  // texture. Triangles have a fixed depth, so the depth test decides before the fragment program
-  // raises the flag: no step reads a texture that another step draws to, and none has to wait.
+  // True if the fragment program compares a proxy's depth with the stored depth, read from the
+  // depth texture. Triangles have a fixed depth, so the depth test decides before the fragment
+  // program runs. So no step reads a texture that another step draws to, and no step has to wait.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }
@@ -166,7 +166,7 @@ struct CanvasState {
 
   void bind_target(GLuint framebuffer) const;
   void set_depth_func(GLenum function) const;
-  GlTexture texture(GLenum format) const;  // of the target's size
+  GlTexture texture(GLenum format) const;  // a texture of the target's size
   CanvasProgram program(const std::string& name, std::vector<std::string> defines) const;
   void resize_target();
   void set_uniforms(CanvasProgram& program) const;
@@ -179,12 +179,12 @@ struct CanvasState {
                      bool touching) const;
   void draw(std::size_t first, std::size_t count);
   void stamp(std::size_t place);
-  /// Returns the milliseconds between the two stamps, negative if unknown. Precondition: the device
+  /// Returns the milliseconds between the two stamps; negative if unknown. Precondition: the device
   /// has finished all commands. Throws Error if GL fails.
   double stamped_ms() const;
 
-  // begin() uploads the elements and prepares the targets. All four functions throw Error if the
-  // device refuses or a command was lost; the contents of the device are then unknown.
+  // begin() uploads the elements and prepares the targets. These four functions throw Error if the
+  // device refuses or a command was lost. Then the contents of the device are unknown.
   void begin(const Window& window, const Drawables& drawables);
   std::vector<std::uint8_t> run(const Pass& pass);
   std::vector<float> depths(Verb verb, const std::vector<Draw>& wanted);

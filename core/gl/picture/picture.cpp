@@ -1,4 +1,4 @@
-// Draws with several samples along each side of a pixel and averages them on the CPU.
+// Draws with several samples along each side of a pixel. The CPU averages the samples.
 #include "core/gl/picture/picture.h"
 
 #include <Eigen/Geometry>
@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// Draws triangles that were shaded on the CPU. A corner: x, y and depth in normalized device
-// coordinates, and its colour, RGBA8 in 32 bits.
+// Draws triangles whose colours were computed on the CPU. A corner is x, y and depth in normalized
+// device coordinates, and its colour as RGBA8 in 32 bits.
 constexpr char kTriangles[] = R"glsl(
 #ifdef FAR_VERTEX
 layout(std430, binding = 0) readonly buffer Corners { uvec4 corners[]; };
@@ -33,10 +33,10 @@ void main() { o_colour = v_colour; }
 #endif
 )glsl";
 
-// Light comes from over the viewer's left shoulder; x right, y up, depth away.
+// Direction to the light: behind and above the viewer's left shoulder (x right, y up, z away).
 const Vec3 kLight = Vec3(-0.45, 0.60, -0.66).normalized();
 constexpr double kAmbient = 0.42;
-constexpr std::size_t kBatch = 1 << 18;  // the most corners that are sent at once
+constexpr std::size_t kBatch = 1 << 18;  // most corners in one upload
 
 struct Corner {
   float x, y, z;
@@ -57,12 +57,12 @@ double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
   if (!(length > 0) || !std::isfinite(length)) return 1;
-  // Without the ambient part, surfaces at grazing light would be nearly black and hide the shape.
+  // Ambient light keeps surfaces at grazing angles from being nearly black.
   const double facing = std::abs(normal.dot(kLight)) / length;
   return kAmbient + (1.08 - kAmbient) * facing;
 }
 
-// Collects corners, and draws them whenever a batch is full.
+// Collects the corners of triangles, and draws them when a batch is full.
 class Batch {
  public:
   Batch(const Window& window, GLuint buffer) : window_(window), buffer_(buffer) {
@@ -99,7 +99,7 @@ class Batch {
   }
 
  private:
-  // Adds the segment from a to b, widened by `half` px on all sides.
+  // Adds a rectangle: the segment from a to b, widened by `half` px on all sides.
   void strip(const Vec3& a, const Vec3& b, double half) {
     Eigen::Vector2d along = (b - a).head<2>();
     const double length = along.norm();
@@ -129,7 +129,7 @@ class Batch {
   double lift_ = 0;
 };
 
-// Each pixel is the mean of samples x samples texels. The first row of texels is the lowest.
+// Averages samples x samples texels for each pixel. The first row of texels is the lowest.
 Image filtered(const std::vector<Rgba>& texels, int width, int height, int samples) {
   Image out(width, height, {0, 0, 0, 0});
   for (int y = 0; y < height; ++y) {
@@ -155,8 +155,8 @@ Image filtered(const std::vector<Rgba>& texels, int width, int height, int sampl
   return out;
 }
 
-// Returns the window with a depth range that holds all triangles. Some may leave the window's
-// boxes.
+// Returns the window with a depth range that contains all triangles, even those outside the
+// window's boxes.
 Window deepened(Window window, const Scene& scene, std::span<const PictureTriangle> triangles) {
   const Window before = window;
   for (const PictureTriangle& t : triangles) {
@@ -203,7 +203,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_CLAMP);  // lifted triangles may leave the depth range of the scene
+  glEnable(GL_DEPTH_CLAMP);  // keeps lifted triangles that leave the depth range
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthRange(0, 1);

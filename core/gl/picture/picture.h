@@ -1,5 +1,5 @@
-// Pictures of scenes for people: triangles in colours, seen orthographically, the nearest in front,
-// antialiased. Culling does not use this, and no guarantee depends on it.
+// Draws pictures of scenes: coloured triangles in an orthographic view, antialiased. Culling does
+// not use these pictures, and no guarantee depends on them.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace farcull {
 
 struct Rgba {
   std::uint8_t r = 0, g = 0, b = 0;
-  std::uint8_t a = 255;  // 0: no triangle is here; r, g and b are not multiplied by a
+  std::uint8_t a = 255;  // covered part; 0: no triangle here; r, g and b are not multiplied by a
   bool operator==(const Rgba&) const = default;
 };
 
-/// Rows from the top, each from the left; width * height pixels.
+/// width * height pixels, in rows from top to bottom, each from left to right.
 struct Image {
   int width = 0, height = 0;
   std::vector<Rgba> pixels;
@@ -33,7 +33,7 @@ struct Image {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Mixes `part` (0 to 1) of the colour into an opaque pixel.
+/// Mixes the colour into an opaque pixel. part: the colour's share, 0 to 1.
 inline void blend(Rgba& pixel, const Rgba& colour, double part) {
   const auto mix = [part](std::uint8_t below, std::uint8_t above) {
     return static_cast<std::uint8_t>(below + (above - below) * part + 0.5);
@@ -44,28 +44,28 @@ inline void blend(Rgba& pixel, const Rgba& colour, double part) {
 struct PictureTriangle {
   std::uint32_t triangle = 0;
   Rgba colour;         // drawn opaque; its `a` is ignored
-  bool shaded = true;  // Lambert on both sides, and ambient light; false: the colour as it is
+  bool shaded = true;  // Lambert shading on both sides, and ambient light; false: plain colour
   float outline = 0;   // px: the width of strips along its edges, so that even a degenerate
                        // triangle covers a disc of this diameter
   float lift = 0;      // px by which the triangle is moved towards the eye
 };
 
-/// Largest width and height of a picture, px. Every OpenGL 4.3 can draw it with samples = 4.
+/// Largest width and height of a picture, px. Every OpenGL 4.3 device can draw it with samples = 4.
 constexpr int kMostPicture = 4096;
 
-/// The window of a picture of width x height pixels (each even, 2 to kMostPicture). It looks along
-/// the view and shows the boxes with a border of `margin` (a fraction of its size, < 1/2) on each
-/// side. The origin is inside the boxes, so a scene far from the world's origin is drawn as sharply
-/// as one near it. Throws Error naming the scene if doubles cannot distinguish its pixels.
+/// Returns the window of a picture of width x height pixels (each even, 2 to kMostPicture). It
+/// looks along the view at the boxes. margin: border on each side, as a fraction of the picture (<
+/// 1/2). The origin is near the boxes, so that scenes far from the world's origin are sharp. Throws
+/// Error naming the scene if doubles cannot distinguish its pixels.
 Window picture_window(const View& view, std::span<const Box> boxes, int width, int height,
                       double margin, const std::string& scene_name);
 
-/// Draws the triangles inside the window's width and height, at any depth. In the image, x (right)
-/// is the first row of window.view, up is its second row, and a smaller depth is nearer. Alpha is
-/// the covered part of a pixel: 0 where no triangle is. Triangles that pixel space cannot resolve
-/// (clip.h) are left out. Memory does not grow with the number of triangles. Throws Error if the
-/// device refuses the size or reports an error. samples: along each side of a pixel; the pixel is
-/// the mean of samples^2 samples.
+/// Draws the triangles inside the window's width and height, at any depth. In the image, the first
+/// row of window.view points right and the second row points up. A smaller depth is nearer. Alpha
+/// is the covered part of a pixel. Triangles that pixel space cannot resolve (Patch::drawable() in
+/// core/view/view.h) are left out. Memory does not grow with the number of triangles. Each pixel is
+/// the mean of samples x samples samples. Throws Error if the device refuses the size or reports an
+/// error.
 Image draw_picture(const GlContext& context, const Scene& scene, const Window& window,
                    std::span<const PictureTriangle> triangles, int samples = 3);
 

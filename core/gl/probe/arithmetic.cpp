@@ -1,4 +1,4 @@
-// Probes of A4 and A9: what shaders compute, and what reaches them. Also kernels on single cases.
+// Probes of A4 (shader arithmetic) and A9 (transfer of data to shaders). Also runs kernels.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -23,15 +23,15 @@ using Operands = std::array<float, 4>;  // a, b, c, unused
 
 float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Error of `got` as an approximation of the exact head + tail (|tail| is tiny), in units of 2^-23
-// of this sum. Where a result may be flushed to 0 or overflow, doing so is no error.
+// Returns the error of `got`, in units of 2^-23 of the exact value head + tail (|tail| is tiny). A
+// result that GLSL allows to be flushed to 0 or to overflow counts as correct.
 double units(float got, double head, double tail) {
   const double exact = std::abs(head);
   if (exact > kLargest) {
     const bool right = std::signbit(got) == std::signbit(head) && std::abs(got) >= kLargest;
     return right ? 0 : std::numeric_limits<double>::infinity();
   }
-  // The subtraction is exact if got is anywhere near.
+  // The subtraction got - head is exact if `got` is near `head`.
   const double error = std::abs((static_cast<double>(got) - head) - tail);
   if (exact < kSmallest) return error <= kSmallest ? 0 : std::numeric_limits<double>::infinity();
   return error / (exact * kUnit);
@@ -49,7 +49,7 @@ double quotient_units(float got, double a, double b) {
     return std::abs(got) <= 2 * kSmallest ? 0 : std::numeric_limits<double>::infinity();
   if (std::signbit(got) != (std::signbit(a) != std::signbit(b)))
     return std::numeric_limits<double>::infinity();
-  // got * b is exact. Its difference from a is also exact, if got is near a / b.
+  // got * b is exact in double. If `got` is near a / b, got * b - a is also exact.
   return std::abs(static_cast<double>(got) * b - a) / (std::abs(a) * kUnit);
 }
 
@@ -58,7 +58,7 @@ std::vector<Operands> make_operands(Random& random) {
   for (std::size_t i = 0; i < kCases; ++i) {
     float a = random.normal(-126, 127), b = random.normal(-126, 127);
     switch (i % 8) {
-      case 1:  // the sizes that kernels see
+      case 1:  // magnitudes that kernels compute with
       case 2:
         a = random.normal(-24, 20);
         b = random.normal(-24, 20);
@@ -88,7 +88,7 @@ std::vector<Operands> make_operands(Random& random) {
         break;
     }
     float c = a * b;
-    // c is about a * b, unless that product may be flushed or overflow.
+    // c is about a * b, so that a * b - c cancels. Otherwise a * b may be flushed or overflow.
     if (!(std::abs(c) > 0x1p-100f && std::abs(c) < 0x1p100f)) c = random.normal(-24, 20);
     out[i] = {a, b, neighbour(c, random.below(3) - 1), 0};
   }
@@ -112,7 +112,7 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step starts from the device's result of the previous step: no rounding mode is assumed.
+    // Each step is compared with the device's own result of the step before, in any rounding mode.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)
@@ -199,9 +199,9 @@ ProbeResult transport(const ProbeOptions& options) {
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// Runs canvas.frag itself on sorted depths. The mapped depths must not decrease. Entries must be
-// mapped into [1/4, 3/4], exits at most kAskedBehind beyond it. If an entry and an exit have the
-// same depth, the exit must not be mapped before the entry.
+// Runs canvas.frag on sorted depths. The mapped depths must not decrease. Entries must be mapped
+// into [1/4, 3/4], and exits to at most 3/4 + kAskedBehind. If an entry and an exit have the same
+// depth, the exit must not be mapped before the entry.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
@@ -216,7 +216,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
       const float base = z.size() % 3 == 0 ? random.in_float(-1.25 * reach, 1.25 * reach)
                                            : random.normal(-60, 0) * reach;
       for (int k = 0; k < 4 && z.size() < kPixels; ++k)
-        z.push_back(neighbour(base, k));  // neighbours
+        z.push_back(neighbour(base, k));  // adjacent floats
     }
     std::sort(z.begin(), z.end());
     std::vector<Proxy> proxies = pixel_proxies(kSide);
@@ -232,7 +232,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
     };
     const std::vector<std::uint32_t> entry = depths(store), exit = depths(ask);
     const bool floats = format == DepthBuffer::float32;
-    // 1/4 and 3/4: exact for floats, to within 2^-24 for fixed point.
+    // 1/4 and 3/4. Floats hold them exactly; fixed point is within 2^-24 of them.
     const std::uint32_t least = floats ? std::bit_cast<std::uint32_t>(0.25f) : 0x3fffff00u;
     const std::uint32_t most = floats ? std::bit_cast<std::uint32_t>(0.75f) : 0xc0000100u;
     const std::uint32_t behind = floats ? std::bit_cast<std::uint32_t>(0.75f + kAskedBehind)
@@ -261,7 +261,7 @@ std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& option
 
 }  // namespace farcull::probe
 
-// Kernels on single cases. A canvas draws the solids, one in each pixel of a square window; their
+// Runs kernels on single cases. A canvas draws each solid in one pixel of a square window, and its
 // entry and exit depths are read back.
 namespace farcull {
 
@@ -282,7 +282,7 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
   const std::vector<float> entry = canvas.samples(Verb::store, draws);
   const std::vector<float> exit = canvas.samples(Verb::ask, draws);
   std::vector<SolidAnswer> out;
-  // If only the entry or only the exit was drawn, the other is NaN, and the interval is empty.
+  // If only one of entry and exit was drawn, the other is NaN, and the interval is empty.
   for (std::size_t i = 0; i < cases.size(); ++i)
     out.push_back({!std::isnan(entry[i]) || !std::isnan(exit[i]), entry[i], exit[i]});
   return out;

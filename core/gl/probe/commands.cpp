@@ -1,7 +1,7 @@
-// Probes of A7, A8 and A10. A7: lost commands are noticed, and the next answer is right. A8: values
-// that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose nor repeat
-// an update; a weak barrier shows only on devices that reorder commands. A10: the driver has no
-// threads that are known to damage memory.
+// Probes of A7, A8 and A10. A7: lost commands are noticed, and the next pass gives the right
+// answer. A8: after a barrier, later commands read what a dispatch or a draw wrote, and atomics
+// neither lose nor repeat an update. (A weak barrier shows only on devices that reorder commands.)
+// A10: the driver has no threads that are known to damage memory.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -16,7 +16,7 @@ namespace {
 
 ProbeResult faults(const std::string& name, const GlContext& context, const ProbeOptions& options,
                    const GlCanvasOptions& kind) {
-  // One proxy stored, one asked behind it and one in front.
+  // Stores proxy 0, then tests proxy 1 (behind it, seen) and proxy 2 (in front, not seen).
   Drawables drawables;
   for (const float z : {0.0f, 10.0f, -10.0f}) {
     drawables.proxies.push_back(box(-20, -20, 20, 20));
@@ -51,7 +51,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
       noticed = true;
     }
     fault.reset();
-    // The pass after the fault must neither fail nor return leftovers of the faulty pass.
+    // The next pass must not fail, and must not return results of the faulty pass.
     bool recovered = false;
     try {
       canvas.begin(window(64, 64), drawables);
@@ -70,7 +70,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
 
 constexpr std::uint32_t kGroup = 64;      // local_size_x
 constexpr std::uint32_t kTakers = 65536;  // a power of two
-constexpr std::uint32_t kSpread = 16;     // counters, as in probe_memory.comp
+constexpr std::uint32_t kSpread = 16;     // number of counters, as in probe_memory.comp
 
 GlProgram step_program(int step, bool plain) {
   std::vector<std::string> defines = {"FAR_STEP " + std::to_string(step)};
@@ -87,8 +87,8 @@ void run(GLuint program, GLuint from, GLuint to, std::uint32_t count, std::uint3
   glDispatchCompute((count + kGroup - 1) / kGroup, 1, 1);
 }
 
-// Checks that every number of every counter is taken once, that every bit is set, and that of the
-// two invocations with the same mark exactly one finds it unset.
+// Checks the atomics. Each counter must give each number to one invocation, and every bit must be
+// set. Two invocations share each mark; exactly one of them must find it unset.
 ProbeResult atomics(const ProbeOptions& options) {
   const GlProgram program = step_program(0, options.plain_atomics);
   Worst wrong;
@@ -156,9 +156,9 @@ ProbeResult dispatches(const ProbeOptions& options) {
                 "48 in a chain, each reads what other groups of the one before wrote");
 }
 
-// A draw counts the fragments of each pixel, a dispatch reads the counts. The drawing program has a
-// discard, like all programs of the canvas that write to buffers. Without one, llvmpipe (Mesa
-// 22.3.6) drops all earlier work on a tile, buffer writes included, when a triangle covers it.
+// A draw counts the fragments of each pixel, and a dispatch copies the counts. Like all programs of
+// the canvas that write to buffers, the drawing program has a discard. Without it, llvmpipe (Mesa
+// 22.3.6) drops earlier work on a tile that a triangle covers, buffer writes included.
 ProbeResult draws(const ProbeOptions& options) {
   constexpr int kSide = 512;
   constexpr std::uint32_t kPixels = kSide * kSide;
@@ -175,7 +175,7 @@ ProbeResult draws(const ProbeOptions& options) {
     bind_zeros(counts, 2, kPixels);
     target.start();
     target.use(count);
-    // The deliberate defect: the dispatch comes before the draw that it should follow.
+    // The deliberate defect: the dispatch runs before the draw whose counts it copies.
     if (options.unordered_reads) run(copy, counts, copied, kPixels);
     glUseProgram(count);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, counts);
@@ -200,7 +200,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Damage to memory cannot be seen from outside. The driver's threads are a known cause of damage.
+// Counts the driver's threads, a known cause of memory damage. The damage cannot be observed.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

@@ -1,4 +1,4 @@
-// Probes of A5 and A6: depth tests, the texels that they store, and queries.
+// Probes of A5 (depth tests and the depths that they store) and of A6 (occlusion queries).
 #include <algorithm>
 #include <array>
 
@@ -13,9 +13,9 @@ namespace {
 constexpr int kSide = 160;
 constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
-// Random depths of a layer, one for each pixel. Some are in the range of the canvas's depth map, at
-// its ends, at depths of control items (core/gl/canvas/state.h), or anywhere. Others equal the
-// depth of the layer `beside` in their pixel, or are next to it.
+// Returns random depths, one for each pixel. They lie in the range of the canvas's depth map, at
+// the ends of this range, at depths of control items (core/gl/canvas/state.h), or anywhere. If
+// `beside` is given, some are equal to its depth in the same pixel, or at most two floats away.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -30,14 +30,14 @@ std::vector<float> random_depths(Random& random, const std::vector<float>& besid
   return out;
 }
 
-// One proxy per pixel, at these depths.
+// Returns one proxy per pixel, at these depths.
 std::vector<Proxy> proxies_at(const std::vector<float>& depths) {
   std::vector<Proxy> out = pixel_proxies(kSide);
   for (std::size_t i = 0; i < kPixels; ++i) out[i].solid[4][2] = depths[i];
   return out;
 }
 
-// Layers of one proxy per pixel are stored with LESS and asked with GEQUAL.
+// Stores layers of one proxy per pixel with GL_LESS, then tests proxies with GL_GEQUAL.
 ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
   constexpr std::size_t kLayers = 4;
   const bool floats = format == DepthBuffer::float32;
@@ -52,7 +52,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
     proxies.insert(proxies.end(), one.begin(), one.end());
   }
   target.upload(proxies);
-  // Returns the depths that the buffer holds after `count` layers.
+  // Draws `count` layers into an empty buffer. Returns the depths that the buffer then holds.
   const auto store = [&](std::size_t first, std::size_t count) {
     target.start();
     Target::depth_test(GL_LESS, true);
@@ -60,7 +60,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
     target.draw(first * kPixels, count * kPixels);
     return target.depths();
   };
-  // A layer drawn alone shows how the buffer rounds it. When all are drawn, the least must stay.
+  // Draws each layer alone to see its rounded depths. All layers together must leave the least.
   std::vector<std::uint32_t> least(kPixels, 0xffffffff);
   std::vector<float> nearest(kPixels, 1);
   Worst wrong;
@@ -77,12 +77,13 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
 
   std::uint64_t extra = 0;
   for (std::size_t k = 0; k < kLayers + 1; ++k) {
-    // In the last round each pixel asks at its stored depth: GEQUAL must pass equal depths.
+    // The last round tests each pixel at its stored depth: GL_GEQUAL must pass equal depths.
     std::vector<float> asked = k < kLayers ? layers[k] : nearest;
     if (k < kLayers) {
       for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
     }
-    // Stores all layers, then asks a proxy at each depth. Pixel i is i + 1 where the proxy passed.
+    // Stores all layers, then tests a proxy in each pixel i. Its colour is i + 1 if the proxy
+    // passed.
     store(0, kLayers);
     target.upload(proxies_at(asked));
     Target::depth_test(GL_GEQUAL, false);
@@ -105,7 +106,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
                 note);
 }
 
-// Checks that a shader reads the very bits of the depth that was stored.
+// Checks that a shader reads exactly the stored depth, bit for bit.
 ProbeResult texels(const ProbeOptions& options) {
   constexpr int kSide = 256;
   constexpr std::uint32_t kPixels = kSide * kSide;
@@ -117,7 +118,7 @@ ProbeResult texels(const ProbeOptions& options) {
   std::vector<Proxy> proxies = pixel_proxies(kSide);
   std::vector<float> depths;
   for (std::uint32_t i = 0; i < kPixels; ++i) {
-    // Depths in the range of the depth map, near its ends, anywhere in [0, 1), and 0 or 1.
+    // Depths in the range of the depth map, near the ends of this range, in [0, 1), and 0 or 1.
     float d = random.in_float(0.25, 0.75);
     if (i % 4 == 1) d = neighbour(random.below(2) ? 0.25f : 0.75f, random.below(9) - 4);
     if (i % 4 == 2) d = random.in_float(0, 1);
@@ -152,8 +153,8 @@ ProbeResult texels(const ProbeOptions& options) {
                 "a shader reads what a draw stored, to the bit");
 }
 
-// Tests the canvas from store to answer. In each pixel a far and a near proxy are stored, and one
-// is asked at the depth of the near one or close to it.
+// Tests the canvas as a whole. In each pixel it stores a far and a near proxy. Then it tests a
+// third proxy, at the depth of the near proxy or at most 32 floats from it.
 ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
                               const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 64;
@@ -202,7 +203,7 @@ ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
       "depths say so");
 }
 
-// Issues all single-pixel queries before the first is read. In every other query nothing passes.
+// Issues all single-pixel queries before reading the first. Odd queries draw hidden proxies.
 ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& options) {
   Random random(options.seed + 9);
   constexpr std::size_t kQueries = 3000;
@@ -216,7 +217,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
     std::vector<Proxy> proxies;
     for (std::size_t i = 0; i < kQueries; ++i) {
       const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;
-      // A square of 1/4 to 1 px around the pixel's centre; mostly the whole pixel.
+      // A square of 1/4 to 1 px side around the pixel's centre. About half cover the whole pixel.
       const double d = random.below(2) ? 0 : random.below(7) / 16.0;
       proxies.push_back(box(x + d, y + d, x + 1 - d, y + 1 - d));
       proxies.back().solid[4][1] = 1;
@@ -252,7 +253,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
                     std::to_string(hidden));
 }
 
-// Asks areas of 1 to 400 px through the canvas; few pixels of an area pass, or none.
+// Tests rectangles of 1 to 400 pixels through the canvas. In each, few or no pixels are visible.
 ProbeResult area_queries(const std::string& name, const GlContext& context,
                          const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 256;
@@ -265,7 +266,7 @@ ProbeResult area_queries(const std::string& name, const GlContext& context,
     drawables.proxies.push_back(q);
     drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
   };
-  // Stores a far background, and on it pixels so near that the asked solids lie behind them.
+  // Stores a far background. Then stores pixels in front of it, nearer than the tested solids.
   std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
   constexpr double kHalf = 0.5 * kWindow;
   add(box(-kHalf, -kHalf, kHalf, kHalf), 50);

@@ -1,12 +1,11 @@
-// Fragments of proxies that canvas.vert placed.
-// FAR_COVERAGE: counts the fragments of the pixel that gl_FragCoord names, and writes that pixel's
-// number to the pixel that the rasterizer chose. A difference shows an error of gl_FragCoord.
-// FAR_DISCARD: has a discard, which never happens.
+// Fragment programs of the probes; canvas.vert places the proxies. One define selects the program:
+// FAR_COVERAGE: counts the fragments of the pixel at gl_FragCoord, and writes the number of this
+// pixel as colour. If the colour is stored in a pixel with another number, gl_FragCoord is wrong.
+// FAR_DISCARD, with FAR_COVERAGE: adds a discard that never happens.
 // FAR_DEPTH: writes a given depth, and a colour that marks the pixel if the depth test passes.
-// (Buffer writes would also happen for fragments that fail a late depth test.)
-// FAR_ARITHMETIC: stores the results of the operations that kernels use, as bits, unchanged.
-// Otherwise: returns the bits that reach a fragment in flat varyings (20 words a slot) and in
-// uniforms (256 words in all).
+// FAR_ARITHMETIC: stores the bits of the results of the operations that kernels use.
+// No define: stores the bits that a fragment reads from flat varyings (20 words for each slot) and
+// from uniforms (256 words in all).
 #if defined(FAR_COVERAGE)
 layout(std430, binding = 2) buffer Counts { uint counts[]; };
 layout(location = 0) out uint place;
@@ -14,8 +13,8 @@ layout(location = 0) out uint place;
 #ifdef FAR_DISCARD
 flat in uint v_slot;
 #endif
-uniform uint u_width;   // of the target, px
-uniform float u_shift;  // px; not 0 only with ProbeOptions::shifted_pixel
+uniform uint u_width;   // width of the target, px
+uniform float u_shift;  // px; 0 unless ProbeOptions::shifted_pixel is set
 
 void main() {
 #ifdef FAR_DISCARD
@@ -36,7 +35,7 @@ void main() {
   mark = v_slot + 1u;
 }
 #elif defined(FAR_ARITHMETIC)
-layout(std430, binding = 2) readonly buffer Operands { vec4 operands[]; };  // a, b, c, -
+layout(std430, binding = 2) readonly buffer Operands { vec4 operands[]; };  // a, b, c, unused
 layout(std430, binding = 3) writeonly buffer Results { uvec4 results[]; };  // three for each case
 
 void probe_case(uint i) {
@@ -48,7 +47,7 @@ void probe_case(uint i) {
   FAR_PRECISE float product = a * b;
   FAR_PRECISE float quotient = a / b;
   FAR_PRECISE float chain = difference + b;   // a, if the compiler simplifies
-  FAR_PRECISE float remainder = product - c;  // the product's rounding error, if it is fused
+  FAR_PRECISE float remainder = product - c;  // rounding error of a * b, if contracted
   float least = min(a, b);
   float most = max(a, b);
   float size = abs(a);
@@ -59,7 +58,7 @@ void probe_case(uint i) {
   results[3u * i + 2u] = uvec4(floatBitsToUint(size), order, floatBitsToUint(a), floatBitsToUint(c));
 }
 
-uniform uint u_width;  // of the target, px
+uniform uint u_width;  // width of the target, px
 
 void main() {
   uvec2 pixel = uvec2(floor(gl_FragCoord.xy));

@@ -1,4 +1,4 @@
-// Probes of the device assumptions A1 to A10. Each probe tries to catch the device breaking an
+// Probes of the device assumptions A1 to A10. Each probe looks for results that violate an
 // assumption. It reports the worst measured value and the bound that the proofs need
 // (docs/budget.md). A probe can refute an assumption, but never prove it.
 #pragma once
@@ -20,48 +20,48 @@ struct ProbeResult {
   double measured = 0;  // the worst measured value, in `unit`
   double bound = 0;     // in `unit`
   std::string unit;
-  std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
-  bool pass = false;          // measured <= bound, and something was compared
+  std::uint64_t samples = 0;  // number of comparisons (of edges, pixels, results, ...)
+  bool pass = false;          // measured <= bound, and samples > 0
   std::string note;           // details, or the text of the Error that ended the probe
-  bool broke_off = false;     // an Error ended the probe: nothing is known
+  bool broke_off = false;     // an Error ended the probe, so it has no result
 };
 
-/// The options from snap_bits on are for tests: each option makes a probe fail.
+/// The options from snap_bits on are for tests: each one makes a probe fail.
 struct ProbeOptions {
   std::uint64_t seed = 1;
-  std::string only = {};  // one assumption, as in "A3"; empty: all
-  bool brief = false;     // about a third of the samples
+  std::string only = {};  // the only assumption to probe, such as "A3"; empty: all
+  bool brief = false;     // draws about a third of the samples
 
-  int snap_bits = 0;                // A2: demands 2^-snap_bits px; 0: the device's own bits
-  bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
-  bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
-  bool fat_zero_area = false;       // A3: the triangles without area get an area
-  bool shifted_pixel = false;       // A9: gl_FragCoord is half a pixel off
-  bool exact_arithmetic = false;    // A4: operations may not round
-  bool loose_text = false;          // A4: shaders without `precise`
-  bool damaged_operand = false;     // A4, A9: one bit of one operand changes on its way
-  bool reversed_depth_map = false;  // A4: farther is mapped nearer
-  bool blind_queries = false;       // A6: queries end before their draws or ask in front of all
-  bool damaged_texel = false;       // A5: one bit of one texel changes on its way
-  bool skipped_faults = false;      // A7: no fault happens
-  bool plain_atomics = false;       // A8: a read and a write instead of an atomic
-  bool unordered_reads = false;     // A8: what is read may not have been written yet
-  bool one_thread = false;          // A10: the driver draws in a thread of its own
+  int snap_bits = 0;                // A2: requires 2^-snap_bits px; 0: uses the device's bits
+  bool no_vertex_term = false;      // A1: requires vertex arithmetic without error
+  bool dropped_triangle = false;    // A3: drops the second triangle of each proxy
+  bool fat_zero_area = false;       // A3: gives an area to the triangles without area
+  bool shifted_pixel = false;       // A9: shifts gl_FragCoord by half a pixel
+  bool exact_arithmetic = false;    // A4: requires operations without rounding
+  bool loose_text = false;          // A4: compiles shaders without `precise`
+  bool damaged_operand = false;     // A4, A9: flips one bit of one operand
+  bool reversed_depth_map = false;  // A4: maps farther depths nearer
+  bool blind_queries = false;       // A6: empty queries, or solids in front of everything
+  bool damaged_texel = false;       // A5: flips one bit of one texel
+  bool skipped_faults = false;      // A7: simulates no fault
+  bool plain_atomics = false;       // A8: uses a read and a write instead of an atomic
+  bool unordered_reads = false;     // A8: reads values before they are written
+  bool one_thread = false;          // A10: counts one more thread of the driver
 };
 
-/// Runs the probes in the order of the assumptions. If `started` is given, it is called with the
-/// assumption before each group. The same device and options give the same results. A probe that
-/// ends with an Error fails; the others go on. The state of GL is not restored.
+/// Runs the probes in the order of the assumptions. Calls `started` (if given) with the assumption
+/// before each group. The same device and options give the same results. If an Error ends a probe,
+/// this probe fails and the next probes run. The state of GL is not restored.
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 
-// The functions below run farcull's kernels on a device as its methods do, with the canvas's own
-// fragment program. verify/kernel_check.h decides whether the answers are right.
+// The functions below run farcull's kernels on a device, with the canvas's own fragment program.
+// verify/kernel_check.h decides whether the answers are right.
 
-/// Side (px) of the square window on which solids are asked, one in each pixel.
+/// Side (px) of the square window in which solids are drawn, one in each pixel.
 constexpr int kSolidSide = 128;
 constexpr std::size_t kSolidCases = std::size_t{kSolidSide} * kSolidSide;
-/// The pixel centre at which case i is asked.
+/// Returns the pixel centre of case i.
 inline SolidCase solid_case_at(std::size_t i) {
   constexpr float kHalf = 0.5f * kSolidSide;
   return {static_cast<float>(i % kSolidSide) + 0.5f - kHalf,
@@ -69,14 +69,14 @@ inline SolidCase solid_case_at(std::size_t i) {
           {}};
 }
 
-/// Returns the answers of `solid` for kSolidCases cases. Case i has the centre of solid_case_at(i).
-/// Makes the context current while it runs, and throws Error as GlCanvas does.
+/// Returns the entry and exit depths of `solid` for kSolidCases cases. Case i has the centre
+/// solid_case_at(i). Makes the context current while it runs. Throws Error as GlCanvas does.
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
-/// In each of kSolidCases pixels, stores one solid and asks another in a window of this depth (px).
-/// Returns per pixel 1 if the asked solid is seen in three ways: with flags, with queries, and with
-/// queries on 24 bits. A solid must be seen behind itself if the pixel's line hits it.
+/// In each of kSolidCases pixels, stores one solid and tests another for visibility, in a window of
+/// this depth (px). Returns 1 per pixel where flags, queries, and queries on 24 bits all see the
+/// tested solid. A solid must be seen behind itself if the pixel's line hits it.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

@@ -1,10 +1,10 @@
-// Atomics, and values that one shader writes and another reads. FAR_STEP 0: every invocation uses
-// each kind of atomic that farcull uses. 1: a link of a chain; each invocation reads what another
-// one wrote in the link before. 2: copies what a draw counted. 3: copies the texels of a depth
-// texture that a draw has written. FAR_PLAIN (a deliberate defect): plain reads and writes instead
-// of atomics.
+// Probes of atomics, and of values that one shader writes and another reads. FAR_STEP selects:
+// 0: every invocation uses each kind of atomic that farcull uses.
+// 1: each invocation reads what another invocation of the previous dispatch wrote.
+// 2: copies the counts of a draw. 3: copies the texels of a depth texture that a draw wrote.
+// FAR_PLAIN (a deliberate defect): plain reads and writes instead of atomics.
 layout(local_size_x = 64) in;
-layout(location = 0) uniform uint u_count;  // invocations
+layout(location = 0) uniform uint u_count;  // number of invocations
 layout(location = 1) uniform uint u_salt;   // in step 3: the texture's width, px
 #if FAR_STEP == 3
 layout(location = 2) uniform sampler2D u_depth;
@@ -14,8 +14,8 @@ layout(std430, binding = 0) buffer From { uint from[]; };
 layout(std430, binding = 1) buffer To { uint to[]; };
 
 #if FAR_STEP == 0
-// from: kSpread counters that count up from 0, kSpread that count down from u_count / kSpread, a
-// bit for each invocation, and a mark for every two of them.
+// The buffer `from` holds kSpread counters from 0 upwards, kSpread counters from u_count / kSpread
+// downwards, one bit for each invocation, and one mark for every two invocations.
 const uint kSpread = 16u;
 uint take(uint at, uint n) {
 #ifdef FAR_PLAIN
@@ -45,8 +45,8 @@ void main() {
 void main() {
   uint w = gl_GlobalInvocationID.x;
   if (w >= u_count) return;
-  // u_count is a power of two and the factor odd, so each word is read once, mostly by another
-  // group.
+  // u_count is a power of two and the factor is odd, so each word is read once. Usually the group
+  // that reads a word is not the group that wrote the word.
   uint other = (w * 40503u + u_salt) & (u_count - 1u);
   to[w] = from[other] * 1664525u + (w ^ u_salt);
 }

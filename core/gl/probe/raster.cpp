@@ -1,5 +1,5 @@
-// Probes of A1 to A3 (the places of edges, and the pixels that triangles cover) and of gl_FragCoord
-// (A9).
+// Probes of A1 and A2 (displacements of edges), of A3 (the pixels that triangles cover), and of A9
+// (gl_FragCoord).
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -10,9 +10,9 @@
 namespace farcull::probe {
 namespace {
 
-// A convex quadrilateral as four half-planes a x + b y + c >= 0 with |a| + |b| = 1. Moving every
-// corner by at most d per axis moves no side by more than d in this measure, so a pixel centre that
-// is inside by more than d stays inside, and one that is outside by more than d stays outside.
+// A convex quadrilateral as four half-planes a x + b y + c >= 0 with |a| + |b| = 1. If every corner
+// moves by at most d along each axis, no side moves by more than d in this measure. So a pixel
+// centre that is more than d inside (outside) stays inside (outside).
 struct Sides {
   std::array<std::array<double, 3>, 4> half{};
 
@@ -72,8 +72,8 @@ class Coverage {
 
 enum class Direction { upright, level, diagonal, any };
 
-// Edges near pixel centres, one proxy each. If a centre is wrongly covered or left out, its
-// distance from the edge is the least displacement (px per axis) that explains it.
+// Tests edges near pixel centres, one proxy for each edge. If a centre is wrongly covered or not
+// covered, the edge was displaced by at least its distance from the centre (px per axis).
 void short_edges(Coverage& coverage, Random& random, Direction direction, double reach,
                  Worst& worst) {
   constexpr int kCell = 6, kEdge = 3;
@@ -83,13 +83,13 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
   for (int y = kEdge; y + kCell + kEdge <= height; y += kCell) {
     for (int x = kEdge; x + kCell + kEdge <= width; x += kCell) {
       const double cx = coverage.centre_x(x + kCell / 2), cy = coverage.centre_y(y + kCell / 2);
-      double turn = 0;  // of the outward normal
+      double turn = 0;  // angle of the outward normal
       const int side = random.below(4);
       if (direction == Direction::upright) turn = (side % 2) * std::numbers::pi;
       if (direction == Direction::level) turn = (side % 2 + 0.5) * std::numbers::pi;
       if (direction == Direction::diagonal) turn = (side * 0.5 + 0.25) * std::numbers::pi;
       if (direction == Direction::any) turn = random.between(0, 2 * std::numbers::pi);
-      // The normal is rounded, so that both ends of an upright edge have the same x.
+      // Rounds the normal, so that both ends of a vertical edge have the same x.
       const double nx = std::round(std::cos(turn) * 0x1p20) * 0x1p-20;
       const double ny = std::round(std::sin(turn) * 0x1p20) * 0x1p-20;
       const double delta = random.between(-reach, reach);
@@ -117,7 +117,7 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
   }
 }
 
-// Four points on an ellipse: a convex quadrilateral of any direction and thinness inside the box.
+// Returns a convex quadrilateral, of any thinness, with corners on an ellipse inside the box.
 Proxy random_quad(Random& random, double cx, double cy, double half_width, double half_height) {
   const double turn = random.between(0, 2 * std::numbers::pi);
   const double thin = std::exp2(-random.between(0, 10));
@@ -145,8 +145,8 @@ bool has_sides(const Proxy& q) {
   return true;
 }
 
-// Draws one proxy as large as the target. Measures the displacement of its sides over all pixels,
-// and counts pixels inside that are not covered exactly once.
+// Draws one proxy as large as the target. Measures the displacement of its sides at all pixels.
+// Counts the pixels inside it that are not covered exactly once.
 void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst, Worst* wrong) {
   const int width = coverage.target().width(), height = coverage.target().height();
   const Proxy q = random_quad(random, 0, 0, 0.5 * width - 1, 0.5 * height - 1);
@@ -163,7 +163,7 @@ void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst,
   }
 }
 
-// Keeps the measurement that is worst relative to its own bound; `samples` is the sum over all.
+// Keeps the measurement that comes closest to its bound. `samples` is the sum over all of them.
 struct Tightest {
   Worst worst;
   double bound = 0;
@@ -188,8 +188,8 @@ std::string size(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
-// Draws quadrilaterals, each in a cell of its own. Each pixel that is inside by more than the
-// displacement must be covered once, also if it lies on the diagonal between the two triangles.
+// Draws quadrilaterals, each in its own cell. Each pixel that is inside by more than `margin` must
+// be covered once, even if it lies on the diagonal between the two triangles.
 Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds) {
   constexpr int kCell = 32;
   const int side = coverage.target().width();
@@ -201,8 +201,8 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
       const double x = (column + 0.5) * kCell - 0.5 * side, y = (row + 0.5) * kCell - 0.5 * side;
       Proxy q = random_quad(random, x, y, 15, 15);
       if (round % 2 == 1) {
-        // A square, upright or on a corner, with corners at pixel centres: its diagonal has
-        // centres.
+        // A square, parallel to the axes or turned by 45 degrees, with corners at pixel centres.
+        // Its diagonal passes through pixel centres.
         const int r = 1 + random.below(14);
         const double cx = x + 0.5, cy = y + 0.5;
         std::array<double, 8> at = {cx - r, cy - r, cx + r, cy - r, cx + r, cy + r, cx - r, cy + r};
@@ -229,7 +229,7 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
   return wrong;
 }
 
-// A mesh of jittered cells whose triangles share corners. It must cover every pixel inside once.
+// Draws a mesh of jittered cells that share corners. It must cover every pixel inside once.
 Worst abutting_mesh(Coverage& coverage, Random& random) {
   const int side = coverage.target().width();
   Worst wrong;
@@ -239,7 +239,7 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         const bool border = i == 0 || j == 0 || i == n || j == n;
-        // If cells have the size of a pixel, every other corner stays on a pixel centre.
+        // If a cell is as large as a pixel, every second corner is exactly at a pixel centre.
         const double shake = border || (cell == 1 && (i + j) % 2 == 0) ? 0 : 0.2 * cell;
         points[static_cast<std::size_t>(j) * (n + 1) + i] = {
             (i - middle) * cell + 0.5 + random.between(-shake, shake),
@@ -267,8 +267,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
   return wrong;
 }
 
-// Points and segments, through pixel centres and elsewhere. Snapping keeps multiples of 1/16 px,
-// and vertical and horizontal segments remain segments. So the snapped triangles have no area.
+// Draws points and segments. Snapping leaves multiples of 1/16 px unchanged, and vertical and
+// horizontal segments remain segments. So the snapped triangles have no area.
 Worst zero_area(Coverage& coverage, Random& random, bool fat) {
   const int side = coverage.target().width();
   std::vector<Proxy> proxies;
@@ -278,7 +278,7 @@ Worst zero_area(Coverage& coverage, Random& random, bool fat) {
       return random.below(2) ? c + 0.5 : c + random.below(16) / 16.0;
     };
     const double x = place(), y = place();
-    const double shift = random.in_float(-1, 1);  // off the grid, along one axis only
+    const double shift = random.in_float(-1, 1);  // not a multiple of 1/16; along one axis only
     constexpr int kWays[][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {1, -1}, {1, 2}, {-3, 1}};
     const int way = random.below(7);
     std::array<double, 8> at{};
@@ -331,7 +331,7 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     for (int round = 0; round < rounds(options, 4); ++round)
       large_quad(coverage, random, 0, &whole, nullptr);
     displacement = std::max(displacement, edge.value);
-    // What exceeds the snapping measured near the centre is due to the vertex arithmetic.
+    // The excess over the snapping measured near the centre is due to the vertex arithmetic.
     edge.value = std::max(0.0, edge.value - near.value);
     far.add(edge, vertex);
     large.add(whole, snap + vertex);

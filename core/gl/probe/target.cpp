@@ -1,5 +1,5 @@
-// Runs the groups of probes one after the other. A group that ends with an Error fails, and the
-// next one runs. The render target that they share draws with the canvas's vertex program.
+// Runs the groups of probes in order. If an Error ends a group, the group fails and the next one
+// runs. The groups share a render target, which draws with the canvas's vertex program.
 
 #include <algorithm>
 #include <numbers>
@@ -47,7 +47,7 @@ float Random::normal(int lowest, int highest) {
   const std::uint64_t r = word();
   const int exponent = lowest + below(highest - lowest + 1);
   std::uint32_t mantissa = static_cast<std::uint32_t>(r) & 0x7fffff;
-  // Roundings go wrong most easily at the ends of a binade and at mantissas with few bits.
+  // Rounding errors are likeliest at the ends of a binade and at mantissas with few bits.
   const std::uint64_t way = r >> 40 & 7;
   if (way == 0) mantissa &= 3;
   if (way == 1) mantissa |= 0x7ffffc;
@@ -266,7 +266,7 @@ double snap_bound(const GlContext& context, const ProbeOptions& options) {
 }
 
 double vertex_bound(const ProbeOptions& options, int viewport) {
-  // The budget's term is the length of a displacement on both axes.
+  // The budget bounds the length of a two-dimensional displacement; sqrt(2) gives one axis.
   return options.no_vertex_term ? 0 : budget_for({}, viewport).vertex / std::numbers::sqrt2;
 }
 

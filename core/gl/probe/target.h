@@ -1,5 +1,5 @@
-// The groups of probes, and what they share: random numbers, results, and a target that places
-// proxies as the canvas does. For core/gl/probe alone.
+// Declares the groups of probes and what they share: random numbers, results, and a render target
+// that places proxies as the canvas does. Only core/gl/probe includes this file.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@
 
 namespace farcull::probe {
 
-/// The groups of probes by assumption.
+/// A group of probes. The comments name the assumptions that each group probes.
 using Group = std::vector<ProbeResult>(const GlContext& context, const ProbeOptions& options);
 Group edges;        // A1, A2
 Group coverage;     // A3, A9
@@ -31,12 +31,12 @@ Group driver;       // A10
 struct Random : RandomNumbers {
   using RandomNumbers::RandomNumbers;
   int below(int n) { return static_cast<int>(word() >> 33) % n; }
-  /// A normal float of either sign, exponent lowest .. highest.
+  /// Returns a normal float of either sign, with an exponent in [lowest, highest].
   float normal(int lowest, int highest);
   float in_float(double lo, double hi) { return static_cast<float>(between(lo, hi)); }
 };
 
-/// The float that is `steps` floats above x (below x if negative).
+/// Returns the float that is `steps` floats above x (below x if `steps` is negative).
 float neighbour(float x, int steps);
 
 /// The worst measured value (NaN counts as infinite), or the number of wrong results.
@@ -60,7 +60,7 @@ ProbeResult result(const std::string& assumption, const std::string& name, const
 /// Returns the result of a probe that failed because an Error ended it.
 ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error);
 
-/// A form of canvas to probe: how it asks what is visible, and its depth format.
+/// A kind of canvas to probe: how it tests visibility, and its depth format.
 struct Configuration {
   const char* name;
   GlCanvasOptions options;
@@ -71,8 +71,8 @@ inline constexpr Configuration kConfigurations[] = {
     {"occlusion queries, 24 bits",
      {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}}};
 
-/// Appends a result for each configuration. If a canvas throws an Error (its control items depend
-/// on the depth test and the queries, too), the probe fails and the next configuration is tried.
+/// Runs the probe on a canvas of each configuration and appends the results. If a canvas throws an
+/// Error, its probe fails, and the next configuration follows.
 using CanvasProbe = ProbeResult(const std::string& name, const GlContext& context,
                                 const ProbeOptions& options, const GlCanvasOptions& canvas);
 void on_canvases(const std::string& assumption, const std::string& kind, CanvasProbe run,
@@ -80,18 +80,18 @@ void on_canvases(const std::string& assumption, const std::string& kind, CanvasP
                  std::vector<ProbeResult>& out);
 
 /// Returns a proxy with these corners (px from the target's centre) and a solid of zeros. Callers
-/// may set numbers of the solid: s0 = (-, -, entry, exit), s4 = (-, fixed, depth, -).
+/// may set s0 = (-, -, entry, exit) and s4 = (-, fixed, depth, -).
 Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);
-/// Returns a proxy over pixel i, counted in rows, of a square target of this side (px, even).
+/// Returns a proxy that covers pixel i of a square target. side: px, even. i counts row by row.
 Proxy pixel_box(int i, int side);
-/// One proxy per pixel of a square target or window, in rows.
+/// Returns one proxy for each pixel of a square target or window, row by row.
 std::vector<Proxy> pixel_proxies(int side);
 
 enum class DepthBuffer { none, float32, fixed24 };
 
-/// A render target of any even size (px) on which proxies are placed as by GlCanvas: with its
-/// vertex program, viewport and scale to normalized device coordinates. Colour: one uint a pixel.
+/// A render target of any even size (px). It places proxies as GlCanvas does: with its vertex
+/// program, viewport and scale to normalized device coordinates. Colour is one uint per pixel.
 class Target {
  public:
   Target(int width, int height, DepthBuffer depth = DepthBuffer::none);
@@ -107,13 +107,13 @@ class Target {
   static void depth_test(GLenum function, bool store);
   /// Sets the uniforms of canvas.vert and canvas.frag, and u_width; leaves the program in use.
   void use(GLuint program, float depth_scale = 1) const;
-  /// Makes `proxies` the elements 0, 1, ..., each with its number as slot.
+  /// Sends `proxies` as elements 0, 1, .... The slot of each element is its number.
   void upload(const std::vector<Proxy>& proxies);
   void draw(std::size_t first, std::size_t count) const;
 
   GLuint depth_texture() const { return depth_; }
   std::vector<std::uint32_t> colour() const;
-  /// Returns depths as bits in the order of the depths: of a float, or of an integer of 32 bits.
+  /// Returns the depths as bits: floats for float32, else normalized 32-bit integers.
   std::vector<std::uint32_t> depths() const;
 
  private:
@@ -127,18 +127,18 @@ class Target {
   GlBuffer elements_, draws_;
 };
 
-/// Links canvas.vert for proxies with this source of a fragment stage.
+/// Links canvas.vert, compiled for proxies, with this source of a fragment program.
 GlProgram proxy_program(const std::string& name, const std::vector<std::string>& fragment,
                         std::vector<std::string> defines = {});
 
-/// A storage buffer of `words` zeros, bound.
+/// Fills the buffer with `words` zeros and binds it.
 void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
 std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
-/// A window of this size and depth (px), seen along z, with 1 px per world unit.
+/// Returns a window of this size and depth (px) that looks along z, with 1 px per world unit.
 Window window(int width, int height, double depth = 100);
-/// A solid without a shape, hit everywhere, with the entry and exit depths of `quad`: s0 = (-, -,
-/// entry, exit).
+/// A solid that every line hits, at the entry and exit depths of its proxy: s0 = (-, -, entry,
+/// exit).
 inline constexpr char kDepthSolid[] = R"glsl(
 bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
                     FAR_OUT(float) exit) {
@@ -149,12 +149,12 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
 )glsl";
 inline SolidProgram depth_solid() { return {"probe", kDepthSolid, nullptr}; }
 
-/// The rounds of a probe: `n`, or about a third of that if the options say `brief`.
+/// Returns the number of rounds of a probe: `n`, or about n / 3 if options.brief is set.
 inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }
 
-/// Largest target side (px) that a canvas on this device could have.
+/// Returns the largest side (px) that a target of a canvas on this device can have.
 int largest_side(const GlContext& context);
-/// Bounds of the displacement per axis (px), from the budget: by snapping; by vertex arithmetic.
+/// Return bounds (px) of the displacement along one axis: by snapping, and by vertex arithmetic.
 double snap_bound(const GlContext& context, const ProbeOptions& options);
 double vertex_bound(const ProbeOptions& options, int viewport);
 

@@ -1,5 +1,5 @@
-// The list of pairs. The two parts of the chosen pair have two colours, and the curve in which these parts
-// cross is drawn. The other parts are ghosts (see-through). The address of the page holds the chosen pair.
+// The list of pairs, and the scene. The two parts of the chosen pair have two colours, and the curve in which
+// they intersect is drawn. All other parts are ghosts (see-through). The page's URL stores the chosen pair.
 
 const MOST_LISTED = 1000;
 const state = { row: -1, search: "", ghosts: true, through: false };
@@ -66,9 +66,9 @@ const sizeOf = (object) => (view.boxes[object].isEmpty() ? 0 : view.boxes[object
 const larger = (row) => (sizeOf(row.a) > sizeOf(row.b) ? row.a : row.b);
 const outerOf = (row) => (row.inner === null ? larger(row) : row.inner === row.a ? row.b : row.a);
 
-// Without a chosen pair, parts that clash or may contain each other have the first colour. The parts of
-// a chosen pair are solid, with two exceptions: a part that contains the other part is a ghost, and if
-// the reader wants to see through, the larger part is a ghost.
+// If no pair is chosen, parts that clash or may contain each other have the first colour. If a pair is chosen,
+// its parts are solid. But a part that contains the other part is a ghost. The larger part is also a ghost if the
+// reader wants to see through.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);
@@ -104,8 +104,8 @@ function showCurve(row) {
   view.scene.add(curves);
 }
 
-// Moves and zooms the view to the pair of a row. The view does not turn. If one part contains the
-// other part, the view shows the complete outer part.
+// Moves and zooms the view to the pair of a row, without turning. If one part contains the other part, the view
+// shows the complete outer part.
 function flyTo(row) {
   const lo = pointOf(row.box, 0), hi = pointOf(row.box, 1), middle = lo.clone().add(hi).multiplyScalar(0.5);
   const size = Math.max(0.01, 2 * hi.sub(lo).length(), 1.3 * (row.inner === null ? Math.min(sizeOf(row.a), sizeOf(row.b)) : sizeOf(outerOf(row))));
@@ -132,7 +132,7 @@ function chooseRow(k) {
   for (const button of byId("rows").querySelectorAll("button")) {
     const chosen = Number(button.dataset.row) === k;
     button.setAttribute("aria-current", String(chosen));
-    // Scrolls the list. Scrolling the page would move the scene out of sight on a narrow screen.
+    // Scrolls only the list. Scrolling the page would move the scene out of sight on a narrow screen.
     if (chosen) byId("rows").scrollTop = button.offsetTop - 40;
   }
   showParts();
@@ -148,7 +148,7 @@ function go(by) {
   chooseRow(numbers[at < 0 ? (by > 0 ? 0 : numbers.length - 1) : (at + by + numbers.length) % numbers.length]);
 }
 
-// Chooses the first pair of the clicked part; after that, each click chooses the part's next pair.
+// The first click on a part chooses the part's first pair. Each further click chooses its next pair.
 function choose(triangle) {
   if (triangle < 0) return;
   const o = frame.owner[triangle], numbers = listed().filter((k) => about.rows[k].a === o || about.rows[k].b === o);
@@ -214,6 +214,6 @@ async function start() {
   }
 }
 
-// For tests and the console.
+// Gives tests and the browser's console access to the state.
 window.farcull = { about, state, get view() { return view; } };
 start();

@@ -1,4 +1,4 @@
-// The controls of the page: the answer, the visible parts of the scene, and the clicked triangle.
+// The controls of a page: choose a method, its resolution, the visible parts of the scene, and a triangle.
 
 // ---- state --------------------------------------------------------------------------------------
 
@@ -144,7 +144,7 @@ function showControls() {
   }
 }
 
-// Loads the answer for the state. Shows this answer unless another one was requested meanwhile.
+// Loads the result of the chosen step, and shows it unless update() was called again meanwhile.
 async function update() {
   const turn = ++loading;
   const step = currentStep();
@@ -189,8 +189,7 @@ function setResolution(by) {
   update();
 }
 
-// Chooses the next missed triangle after the chosen triangle. If the step missed no pair, chooses the
-// next colliding triangle.
+// Chooses the next triangle with a missed pair. If the step missed no pair, chooses the next colliding triangle.
 function next() {
   let first = -1, after = -1;
   const any = answer.step.missedPairs === 0;
@@ -257,7 +256,7 @@ function onKey(event) {
   event.preventDefault();
 }
 
-// Shows the flat picture in place of the scene, with the reason `why`.
+// Shows the flat picture instead of the scene. why: the reason, for the reader.
 function standIn(why) {
   document.documentElement.classList.add("flat");
   byId("trouble").hidden = false;
@@ -287,7 +286,7 @@ async function start() {
   if (view) connectCanvas(); else markReady();
 }
 
-// For tests and the console.
+// Gives tests and the browser's console access to the state.
 window.farcull = { about, state, get view() { return view; }, get frame() { return frame; }, get answer() { return answer; } };
 start().catch((error) => {
   standIn(`The data of this page cannot be shown: ${error.message}.`);

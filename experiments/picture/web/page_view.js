@@ -1,7 +1,7 @@
-// Unpacks the scene of a page, and draws it with three.js and WebGL 2. Every triangle has three corners
-// of its own, so that gl_VertexID / 3 is its number. The texture `states` has a byte for each triangle,
-// and the texture `places` has a place for each object. The unit of length is half the largest extent
-// of the scene's box; the middle of the box is the origin.
+// Unpacks the scene of a page, and draws it with three.js and WebGL 2. Triangles share no vertices, so
+// gl_VertexID / 3 is the number of a triangle. The texture `states` has a byte of flags for each triangle. The
+// texture `places` has, for each object, its shift in an exploded view. The unit of length is half the largest
+// extent of the scene's box. The origin is the middle of the box.
 
 const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
@@ -15,7 +15,7 @@ function element(tag, text, properties) {
 
 function css(colour) { return `rgb(${colour.join(", ")})`; }
 
-// A line of the legend: a box of this colour, and a text.
+// Returns a line of the legend: a box of this colour, and the text.
 function legendLine(colour, text) {
   const line = element("li"), box = element("i");
   box.style.background = colour;
@@ -23,7 +23,7 @@ function legendLine(colour, text) {
   return line;
 }
 
-// Listens to events of the controls. Each row: the id of a control, the event, and the action.
+// Adds event listeners to the controls. Each row: the id of a control, the event, and the action.
 function connect(rows) {
   const all = [...rows, ["licence-button", "click", () => byId("licence").showModal()],
     ["controls", "submit", (e) => e.preventDefault()]];
@@ -44,7 +44,7 @@ uniform vec3 ratio;
 uniform vec3 palette[8];
 uniform vec3 found, missed, idle, chosen, partner;
 uniform float idlePart, explode, lift, pointSize, through;
-uniform int part;  // draws 0: all triangles, 1: collisions over the rest, 2: missed, 3: chosen
+uniform int part;  // draws 0: all triangles, 1: colliding ones over the rest, 2: missed, 3: chosen
 in vec4 position;  // xyz: 0 to 1 in the scene's box; w: number of the object / 65535
 out vec3 placed, seen;
 flat out vec4 paint;
@@ -74,7 +74,7 @@ void main() {
 const FRAGMENT_SHADER = `#version 300 es
 precision highp float;
 precision highp int;
-uniform vec4 cut;  // what lies beyond this plane is cut off
+uniform vec4 cut;  // clipping plane: fragments with dot(cut.xyz, placed) > cut.w are discarded
 uniform int picking;
 in vec3 placed, seen;
 flat in vec4 paint;
@@ -148,7 +148,7 @@ class SceneView {
       side: THREE.DoubleSide, transparent: over, depthTest: !over, depthWrite: !over
     });
     if (part === 1) {
-      // Draws each pixel once, even if several triangles lie behind one another.
+      // Draws each pixel once, even where several triangles overlap in the picture.
       material.stencilWrite = true;
       material.stencilFunc = THREE.EqualStencilFunc;
       material.stencilRef = 0;
@@ -157,8 +157,8 @@ class SceneView {
     return material;
   }
 
-  // corners: three vertex numbers for each triangle; positions: all x, all y, all z, 0 to 65535;
-  // owner: the object of each triangle; objects: [name, first, count].
+  // corners: three vertex numbers for each triangle; positions: all x, all y, all z, 0 to 65535; owner: the
+  // object of each triangle; objects: [name, first triangle, number of triangles].
   setFrame({ corners, positions, owner, objects }) {
     const triangles = owner.length, vertices = positions.length / 3;
     const array = new Uint16Array(12 * triangles);
@@ -188,8 +188,8 @@ class SceneView {
     this.setIndices();
   }
 
-  // Sets the places of the objects in an exploded view. Objects move away from the middle of the scene.
-  // Objects in the middle move in different directions.
+  // Sets the shifts of the objects in an exploded view. Objects move away from the middle of the scene. Objects
+  // at the middle move in different directions.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
     const data = new Float32Array(4 * rows * OBJECT_WIDTH);
@@ -215,7 +215,7 @@ class SceneView {
     this.ask();
   }
 
-  // Makes an object a ghost: the reader sees through it, and cannot pick it.
+  // Makes an object a ghost: it is drawn see-through, and cannot be picked.
   ghost(object, ghost, hidden) {
     this.places.image.data[4 * object + 3] = hidden ? 1 : ghost ? 0.25 : 0;
     this.places.needsUpdate = true;
@@ -235,8 +235,8 @@ class SceneView {
     return geometry;
   }
 
-  // Returns the corners of the faces, edges or points (`kind`) of each triangle whose state has one of
-  // `bits`. A triangle has one point: its first corner.
+  // Returns vertex indices for all triangles whose state has one of `bits`. kind: draws "faces", "edges" or
+  // "points" (the first corner of each triangle).
   indexOf(bits, kind) {
     const data = this.states.image.data, out = [];
     for (let t = 0; t < this.triangles; ++t) {
@@ -272,7 +272,7 @@ class SceneView {
     };
     add(new THREE.Mesh(this.geometry(null), this.materials[0]), 0);
     some(COLLIDES, 1, ["faces"], 1);
-    // Edges and a point make a miss visible, however small its triangle is.
+    // Edges and a point make a missed triangle visible, however small it is.
     some(MISSED, 2, ["faces", "edges", "points"], 2);
     some(PARTNER, 3, ["faces", "edges"], 5);
     some(CHOSEN, 3, ["faces", "edges", "points"], 7);
@@ -352,7 +352,7 @@ class SceneView {
     this.ask();
   }
 
-  // Turns the camera around the middle of the view, in radians.
+  // Turns the camera around the middle of the view, by angles in radians.
   turn(sideways, upwards) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const up = this.camera.up;
@@ -386,7 +386,7 @@ class SceneView {
     this.ask();
   }
 
-  // Asks for a draw before the next refresh of the screen: one draw for any number of calls.
+  // Schedules a draw before the next refresh of the screen. Several calls cause only one draw.
   ask() {
     if (this.asked) return;
     this.asked = true;
@@ -395,7 +395,7 @@ class SceneView {
 
   draw() {
     this.asked = false;
-    // Collisions lie on the surfaces. They are drawn 2 px nearer to the eye, or they would flicker.
+    // Colliding triangles may coincide with others, and would flicker. So they are drawn 2 px nearer to the eye.
     this.uniforms.lift.value = 4 / (this.size()[1] * this.camera.zoom);
     this.renderer.setClearColor(this.paper, 1);
     this.renderer.render(this.scene, this.camera);
@@ -424,8 +424,8 @@ class SceneView {
 
 // ---- the camera and the pointer ----------------------------------------------------------------
 
-// cameraText() returns the place of the camera; `fitted` is the place after resetView(). When the window
-// is resized, the view is reset if the reader has not moved the camera.
+// cameraText() returns the state of the camera; `fitted` is the state after resetView(). When the window is
+// resized, the view is reset if the reader has not moved the camera.
 const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
 let fitted = "";
 
@@ -455,7 +455,7 @@ function collidingCorners() {
   return out;
 }
 
-// Shows the scene. A press and a release at one place choose a triangle; anything else is a drag.
+// Shows the scene. Pressing and releasing the button at one place chooses a triangle. Drags move the camera.
 function connectCanvas() {
   const canvas = byId("canvas");
   let down = null;
@@ -479,7 +479,7 @@ function connectCanvas() {
   view.onDraw = markReady;
 }
 
-// Stores in the page when it was first drawn, for tests.
+// Stores the time of the first draw in the page, for tests.
 function markReady() {
   if (view) view.onDraw = () => {};
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
@@ -528,8 +528,8 @@ async function loadFrame() {
   return { positions, a, b, contacts, corners, objects, triangles, owner };
 }
 
-// Returns which pairs a step missed (a byte for each pair), and which triangles it kept in vain (a bit
-// for each triangle).
+// For a step, returns a byte for each pair (1: missed), and a bit for each triangle (1: kept, but in no
+// collision).
 async function loadStep(step) {
   const lost = step.missed ? await numbersOf(step.missed) : [];
   const missed = new Uint8Array(frame.a.length);

@@ -8,9 +8,9 @@ Arrays to colliding pairs in three lines::
 
 ``V`` is an array of shape (n, 3), the vertices, in any type of number that a double holds exactly.
 ``F`` is an array of shape (m, 3), the triangles, as indices of vertices in any type of whole number.
-Triangles are closed sets, so touching counts. A degenerate triangle is the segment or the point that
-it is. Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends it. A call
-that has no answer raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and
+Triangles are closed sets, so touching counts. A degenerate triangle counts as a segment or a point.
+Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends the call. A call
+that fails raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and
 ``remedy``; :class:`MissingFileError`, which is a FileNotFoundError too; or MemoryError.
 """
 
@@ -18,12 +18,12 @@ import errno as _errno
 import os
 
 # Makes Mesa's llvmpipe draw without threads, since its threads may damage the memory of this process. Mesa
-# reads the variable when a display is opened. If the caller has set a value, it stays, and reports name it.
+# reads the variable when a display is opened. A value that the caller has set is kept, and reports name this value.
 os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
 class Error(Exception):
-    """The exception of a call that has no answer. Attributes: ``where``, the parameter, file or step of a device;
+    """The exception of a call that fails. Attributes: ``where``, the parameter, file or step of a device;
     ``reason``, what is wrong there; ``remedy``, what to do next."""
 
     def __init__(self, where: str, reason: str, remedy: str) -> None:
@@ -37,11 +37,11 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """An argument is wrong; ``where`` names it."""
+    """An argument is wrong; ``where`` names the argument."""
 
 
 class MissingFileError(Error, FileNotFoundError):
-    """A file does not exist; ``where`` and ``filename`` name it."""
+    """A file does not exist; ``where`` and ``filename`` name the file."""
 
     def __init__(self, where: str, reason: str, remedy: str) -> None:
         Error.__init__(self, where, reason, remedy)

@@ -18,14 +18,14 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
         return np.asarray(given)
     try:
         device = getattr(given, "__dlpack_device__", None)
-        if device is not None and device()[0] not in (1, 3):  # the CPU, and memory that it shares
+        if device is not None and device()[0] not in (1, 3):  # DLPack: 1 is CPU, 3 is CUDA host memory
             raise InputError(name, "are in the memory of another device", "copy them to the CPU first")
         if device is not None and not hasattr(given, "__array__"):
             return np.from_dlpack(given)
         return np.asarray(given)
     except (MemoryError, InputError):
         raise
-    except Exception as error:  # any exception of the argument's methods
+    except Exception as error:  # methods of the argument may raise anything
         raise InputError(name, f"cannot be read as an array ({error})", remedy) from error
 
 
@@ -48,7 +48,7 @@ def array(name: str, given: Any) -> np.ndarray:
         remedy = "give an array of shape (m, 3); triangulate polygons" if indices else "give an array of shape (n, 3)"
         raise InputError(name, "have no three columns", remedy)
     if indices:
-        if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy compares in doubles
+        if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy would round to doubles
             row = int(np.argmax((out >= np.uint64(2**63)).any(axis=1)))
             reason = f"triangle {row} names vertex {out[row].max()}"
             raise InputError(name, reason, "give indices from 0 to the number of vertices - 1")
@@ -67,14 +67,14 @@ def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
     remedy = "give (V, F), or an object with vertices and faces, or with points and cells"
     if isinstance(given, (tuple, list)) and len(given) == 2:
         V, F = given
-    elif hasattr(given, "vertices") and hasattr(given, "faces"):  # as of trimesh
+    elif hasattr(given, "vertices") and hasattr(given, "faces"):  # a mesh of trimesh, for example
         V, F = given.vertices, given.faces
-    elif hasattr(given, "points") and hasattr(given, "cells"):  # as of meshio
+    elif hasattr(given, "points") and hasattr(given, "cells"):  # a mesh of meshio, for example
         try:
             blocks = [(block.type, block.data) for block in given.cells]
         except AttributeError:
             raise InputError("meshes", "have cells without type and data", remedy) from None
-        # Lines and vertices are no surface. Other cells are refused, since leaving them out would miss collisions.
+        # Skips lines and vertices, which are no surface. Refuses other cells, since skipping them would miss collisions.
         others = {kind for kind, _ in blocks} - {"triangle", "line", "vertex"}
         if others:
             remedy = "give triangles alone, as in (mesh.points, mesh.cells_dict['triangle'])"
@@ -88,7 +88,7 @@ def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
 
 
 class Grouped:
-    """Triangles grouped into objects, by the first triangle of each or by a label for each triangle."""
+    """Triangles grouped into objects, by the first triangle of each object, or by a label for each triangle."""
 
     def __init__(self, F: Any, object_starts: Any, labels: Any) -> None:
         self.triangles = array("F", F)
@@ -119,7 +119,7 @@ class Grouped:
         return (named[by], *(None if other is None else other[by] for other in others))
 
     def objects(self, pairs: np.ndarray) -> np.ndarray:
-        """Returns the object of each triangle, as a label if there are labels. ``pairs`` has the caller's numbers."""
+        """Returns the object of each triangle, as a label if there are labels. ``pairs``: triangles in the caller's numbers."""
         if self.order is not None:
             place = np.empty(len(self.order), np.int64)
             place[self.order] = np.arange(len(self.order))
@@ -135,7 +135,7 @@ class Grouped:
         rows = read("ignore", given, remedy)
         if rows.size == 0:
             return None
-        # Python compares the labels, since numpy rounds if one array is signed and the other is not.
+        # Compares labels as Python values, since numpy compares signed with unsigned numbers as rounded doubles.
         places = {label: place for place, label in enumerate(self.labels.tolist())}
         try:
             if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iubUS":
@@ -186,11 +186,11 @@ def arrays(
 
 def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str, Any]:
     """Returns the answer of the compiled collider or finder of ``owner``. Sets ``owner._grouped`` to ``grouped``,
-    unless a signal handler called the owner meanwhile: then the handler's call was the last call."""
+    unless a signal handler called the owner meanwhile, since the handler's call is then the latest."""
     turn = object()
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
-    owner._grouped = turn  # Python checks for signals after calls, and the next line is the first call
+    owner._grouped = turn  # set before the first call, after which a signal handler may run
     try:
         found = compiled.find(*given)
     except InputError as error:
@@ -282,8 +282,8 @@ def selves(given: Any) -> Tuple[bool, List[bool]]:
 
 
 def ignored(given: Any, scene: Any = None) -> List[List[int]]:
-    """Returns pairs of different objects. They are given by numbers; with a compiled ``scene`` patterns of names are
-    accepted as well. Without a scene, the library refuses numbers that no object has."""
+    """Returns pairs of different objects. ``given`` has rows of two numbers; with a compiled ``scene``, rows of two
+    patterns of names are accepted as well. Without a scene, the library checks that the numbers exist."""
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
@@ -310,7 +310,7 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
 
 
 def limit(given: Any) -> int:
-    """Returns the limit for the library, which takes 0 for all pairs."""
+    """Returns the limit for the library, where 0 means all pairs."""
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
 
 

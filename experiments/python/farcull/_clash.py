@@ -1,4 +1,4 @@
-"""Which objects clash, and pages to look at answers in a browser."""
+"""Which objects clash, and pages that show answers in a browser."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._scenes import Scene
 
 
 class Clash:
-    """Which objects of a scene clash, as ``farcull clash`` says. Made by :func:`clash`."""
+    """Which objects of a scene clash, as ``farcull clash`` reports. Made by :func:`clash`."""
 
     __slots__ = ("_clash", "_json", "scene")
 
@@ -57,7 +57,7 @@ def clash(
     scene: Scene, clearance: float = 0.0, ignore: Optional[Any] = None, threads: int = 0, *, depth: bool = False,
     tolerance: Union[float, str] = 0.0,
 ) -> Clash:
-    """For every two objects of a scene: do they clash, touch or lie inside each other, or are they near?
+    """Finds which objects of a scene clash, touch, are near, or lie inside another object.
 
     Parameters
     ----------
@@ -65,10 +65,10 @@ def clash(
     clearance: objects at this distance or less are near. World units, finite, 0 or more.
     ignore: pairs of objects that may clash, as in :meth:`Scene.run`; they are listed apart.
     threads: up to 1024; 0: one for each core.
-    depth: True: also give bounds for how deep objects are in each other. Takes long if objects have many triangles.
-    tolerance: an overlap whose depth is proved to be at most the tolerance is a touch, and so is a gap of at most the
-        tolerance. World units, finite, 0 or more; or relative to the diagonal of the box around the scene, as in
-        "1e-9*size".
+    depth: True: also give bounds of the depth of each overlap. Takes long if objects have many triangles.
+    tolerance: an overlap counts as a touch if its depth is proved to be at most the tolerance. A gap of at most the
+        tolerance is a touch as well. World units, finite, 0 or more; or relative to the diagonal of the scene's box, as
+        in "1e-9*size".
 
     Returns a :class:`Clash`. Raises InputError naming the argument that is wrong, and Error.
     """
@@ -88,12 +88,12 @@ def show(
     """Writes a page on which the answer can be turned and explored, and opens it in the browser.
 
     - ``what``: the answer. For a :class:`Clash` the page shows the objects of each pair, and where they cross. For a
-      :class:`Scene`, a :class:`Result` of :func:`collide` or a :class:`Record` it shows the triangles that collide;
-      for a Record it marks those that the method missed.
+      :class:`Scene`, a :class:`Result` of :func:`collide` or a :class:`Record` the page shows the triangles that
+      collide. For a Record the page also marks triangles that the method missed.
     - ``path``: the file to write; None: a new temporary file, which is not deleted.
     - ``browse``: False: the page is written, but not opened.
 
-    Returns the path. All pages but that of a Clash need OpenGL; Mesa's software device will do. Raises InputError if
+    Returns the path. Pages other than that of a Clash need OpenGL; Mesa's software device is enough. Raises InputError if
     no page can show the answer, and Error.
     """
     html = _html(what)

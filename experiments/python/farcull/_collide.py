@@ -34,7 +34,7 @@ class Report:
     neighbours: int  # decided candidates that are neighbours, colliding or not
     contacts_ms: float  # wall clock of finding the kinds of contact
     passed_over: int  # vertices that are not finite and that no triangle uses
-    callers_arithmetic: str  # how the calling thread rounds and flushes, if that is unusual; else empty
+    callers_arithmetic: str  # unusual rounding or flushing of the calling thread, in words; else empty
     stages: List[Dict[str, Any]]
 
 
@@ -85,7 +85,7 @@ class Result:
         return pandas().DataFrame(columns)
 
     def __getstate__(self) -> Dict[str, Any]:
-        """For pickle: without the arrays of the call."""
+        """Returns the state for pickle, without the arrays of the call."""
         return {**self.__dict__, "_input": None}
 
     def __repr__(self) -> str:
@@ -109,11 +109,11 @@ def pandas() -> Any:
 
 
 class Collider:
-    """Finds colliding pairs again and again, as for the frames of an animation, with the answers of :func:`collide`.
+    """Finds colliding pairs repeatedly, for example in the frames of an animation. Answers are those of :func:`collide`.
 
     A collider keeps its memory from call to call. If the triangles and objects stay the same, it keeps its results
-    about triangles that did not move. One thread at a time may use it. It takes the options of :func:`collide` by
-    name; ``ignore`` has numbers alone. Raises InputError naming the option that is wrong.
+    about triangles that did not move. One thread at a time may use a collider. Options are those of :func:`collide`,
+    by name; ``ignore`` takes only numbers of objects. Raises InputError naming the option that is wrong.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -134,7 +134,7 @@ class Collider:
             "ignore": _arguments.ignored(ignore),
             "limit": _arguments.limit(limit),
         }
-        collider._grouped: Any = None  # triangles of the previous call; None if it had no answer
+        collider._grouped: Any = None  # triangles of the previous call; None if that call failed
         collider._needs_numbers = len(question["ignore"]) > 0 or question["limit"] > 0
         collider._collider = _farcull.Collider(question)
 
@@ -196,14 +196,14 @@ def collide(
     contacts: True: also give for each pair how the two triangles meet (:data:`KINDS`).
     ignore: (k, 2) pairs of different objects that are not tested against each other, by their numbers from 0; with
         ``labels`` by their labels.
-    limit: at most this many pairs are found, those of the first rows; neighbours count. 1 or more; None: all pairs.
+    limit: at most this many pairs are found, the first in sorted order; neighbours count. 1 or more; None: all pairs.
         Not with ``labels``.
     labels: in place of object_starts: the object of each triangle, (m,) whole numbers or texts in any order. The
         objects are numbered by their labels in ascending order.
     segments: True: as ``contacts``, and also give the points that the two triangles have in common.
     poses: a matrix (4, 4) or (3, 4) for each object, which moves its vertices; no two objects may then share a
-        vertex. Each product and sum of a coordinate is rounded, from left to right; the answer is exact for the
-        points that come out.
+        vertex. The products and sums of a coordinate are rounded, from left to right. The answer is exact for the
+        rounded points.
 
     Returns a :class:`Result`, which refers to the arrays for :func:`show`. Raises InputError for wrong arguments,
     and if there is nothing to test. Raises MemoryError.
@@ -229,9 +229,9 @@ def join(
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
     """Meshes as V, F and object_starts, the arguments of :func:`collide`.
 
-    A mesh is a pair (V, F); or an object with ``vertices`` and ``faces``, as of trimesh; or one with ``points`` and
-    ``cells``, as of meshio, whose cells are triangles (lines and vertices are passed over, since they are no
-    surface). ``weld`` merges vertices of a mesh that nearly coincide, as :class:`Scene` does. Raises InputError for
+    A mesh is a pair (V, F), an object with ``vertices`` and ``faces`` (trimesh), or an object with ``points`` and
+    ``cells`` (meshio). Its cells must be triangles; lines and vertices are skipped, since they are no surface.
+    ``weld`` merges vertices of a mesh that nearly coincide, as :class:`Scene` does. Raises InputError for
     anything else, and for a mesh without triangles.
     """
     tolerance = _arguments.weld(weld)

@@ -31,7 +31,7 @@ class Distance:
     squared: Optional[str]  # "numerator/denominator" in lowest terms, nothing rounded; None without exact=True
     points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
     weights: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # barycentric coordinates of the points
-    normal: Tuple[float, float, float]  # unit, from the first point to the second; zeros if the triangles meet
+    normal: Tuple[float, float, float]  # unit vector from the first point to the second; zeros if the triangles meet
     features: Tuple[str, str]  # where the points lie: two of FEATURES
     inside: str  # one of INSIDE
 
@@ -47,7 +47,7 @@ class Distances(Sequence[Distance]):
     squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms; None without exact=True
     points: NDArray[np.float64]  # (k, 2, 3) nearest points, each coordinate rounded
     weights: NDArray[np.float64]  # (k, 2, 3) barycentric coordinates of the points
-    normals: NDArray[np.float64]  # (k, 3) unit, from the first point to the second; zeros if the triangles meet
+    normals: NDArray[np.float64]  # (k, 3) unit vector from the first point to the second; zeros if the triangles meet
     features: NDArray[np.uint8]  # (k, 2) where the points lie, as places in FEATURES
     inside: NDArray[np.uint8]  # (k,) places in INSIDE
 
@@ -94,11 +94,11 @@ class Distances(Sequence[Distance]):
 
 
 class DistanceFinder:
-    """Finds distances again and again, as for the frames of an animation, with the answers of :func:`distances`.
+    """Finds distances repeatedly, for example in the frames of an animation. Answers are those of :func:`distances`.
 
     The nearest triangles of one call are the first guess of the next call. This saves time if little moved, but the
-    next call may be about any other scene. A finder takes the options of :func:`distances` by name. One thread at a
-    time may use it.
+    next call may use any other scene. A finder takes the options of :func:`distances` by name. One thread at a
+    time may use a finder.
     """
 
     # The first parameter is positional, so that `self` can be a name of an option.
@@ -118,7 +118,7 @@ class DistanceFinder:
         if which != "nearest" and wanted != 1:
             raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
         pairs = _arguments.ignored(ignore)
-        finder._grouped: Any = None  # triangles of the previous call; None if it had no answer
+        finder._grouped: Any = None  # triangles of the previous call; None if that call failed
         finder._ignores = len(pairs) > 0
         finder._finder = _farcull.DistanceFinder(
             which, wanted, limit, all_objects, each, _arguments.flag("inside", inside), pairs,
@@ -171,14 +171,14 @@ def distances(
         position); or one truth value for each object. Not with "nearest".
     inside: True: find out by winding numbers if an object lies inside another.
     threads: up to 1024; 0: one for each core.
-    ignore: pairs of different objects that are not answered, as in :func:`collide`; not with "nearest".
+    ignore: pairs of different objects that get no answer, as in :func:`collide`; not with "nearest".
     exact: True: also give ``squared``. With "all", each number is then the exact one, rounded once; this takes about
         ten times as long. False, with "all": the pairs are exact; a distance is off by at most 2^-32 of itself (0 only
         if the triangles meet), a normal by at most 2^-15, and a point is off its triangle by at most 2^-45 of the
-        pair's extent. Among points that are nearly as near, True and False may choose different ones.
+        pair's extent. If several points are almost equally near, True and False may give different ones.
 
     Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the labels.
-    Raises InputError, which names the wrong argument, or if there is nothing to measure. Raises MemoryError.
+    Raises InputError for a wrong argument, and if there is nothing to measure. Raises MemoryError.
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(

@@ -120,10 +120,10 @@ def check(
     scene: "Scene", certificate: Optional[str] = None, pairs: Optional[ArrayLike] = None,
     clearance: Optional[float] = None,
 ) -> Check:
-    """Proves or refutes a certificate, a list of pairs, or both, with integers alone.
+    """Proves or refutes a certificate, a list of pairs, or both, with integer arithmetic only.
 
     - ``certificate``: the text of :meth:`Record.certificate`.
-    - ``pairs``: (k, 2) triangles, in any order: are these all pairs that meet, neighbours included?
+    - ``pairs``: (k, 2) triangles, in any order, claimed to be all pairs that meet, neighbours included.
     - ``clearance``: the clearance of the list; default: that of the certificate, or 0 without a certificate.
 
     Raises InputError if neither certificate nor pairs are given, or if the scene lacks a triangle of the pairs.
@@ -152,7 +152,7 @@ class Picture:
 
     pixels: NDArray[np.uint8]  # (height, width, 4): red, green, blue, opacity; rows from the top
     panels: List[Dict[str, Any]]  # title, headline and counts of each panel
-    html: str  # the page; empty if it was not asked for
+    html: str  # the page; empty unless ``page`` was True
 
 
 def picture(
@@ -160,7 +160,7 @@ def picture(
     view: str = "", up: str = "", zoom: bool = False,
     width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
-    """Draws which triangles collide, which of them a method missed, and which it kept in vain.
+    """Draws the triangles that collide, those that a method missed, and those that it kept although they do not collide.
 
     - ``methods``: one for each panel: a name, or the options of :meth:`Scene.run` with ``method`` among them.
     - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and the upward direction.

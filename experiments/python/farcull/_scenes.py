@@ -1,4 +1,4 @@
-"""Scenes: of arrays, files, or built-in ones; and scenes that move."""
+"""Scenes from arrays, from files or built in, and scenes that move."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Scene:
     triangles: NDArray[np.uint32]  # (m, 3) indices of vertices; a view that cannot be written to
     object_starts: NDArray[np.int64]  # the number of the first triangle of each object
     ignored: NDArray[np.int64]  # (k, 2) pairs of objects that the scene file ignores
-    names: List[str]  # of the objects
+    names: List[str]  # names of the objects
     self: List[bool]  # which objects are tested against themselves
 
     def __init__(
@@ -108,7 +108,7 @@ class Scene:
         return run(scene, method, **options)
 
     def __reduce__(self) -> Any:
-        """For pickle: the arrays and names, exactly."""
+        """Returns the arrays and names for pickle, exactly."""
         if len(self.ignored):
             raise InputError("scene", "ignores objects, which a pickle does not hold", "pass its file")
         return _of_arrays, (
@@ -131,8 +131,8 @@ class Frames:
     """A scene that moves: ``for frame, scene in farcull.Frames("cloth", frames=60): ...``.
 
     ``names``: a built-in scene that moves, or mesh files with %d or %04d in their names. ``frames``: a number N for 0
-    to N - 1, or (first, last). ``self``, ``weld``: as for :class:`Scene`. Raises Error if nothing moves, and when it
-    reaches a frame that cannot be read.
+    to N - 1, or (first, last). ``self``, ``weld``: as for :class:`Scene`. Raises Error if nothing moves, and for a
+    frame that cannot be read.
     """
 
     def __init__(

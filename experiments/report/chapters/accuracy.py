@@ -3,9 +3,9 @@ picture of CULLIDE beside FAR where CULLIDE misses something."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "Boxes")
-SHOWN = (", one round", ", one round, conservative", ", one round, all views, conservative")  # forms with lines
-SIZED = ("FAR (OBB)", *(f"CULLIDE{form}" for form in SHOWN))  # told at each size of triangles
-LEAST_PIXELS = 128  # a picture with fewer shows little more than misses
+SHOWN = (", one round", ", one round, conservative", ", one round, all views, conservative")  # forms that are drawn as lines
+SIZED = ("FAR (OBB)", *(f"CULLIDE{form}" for form in SHOWN))  # reported for each size of triangles
+LEAST_PIXELS = 128  # a picture with fewer pixels shows little besides the misses
 
 
 def with_groups(rows):
@@ -145,7 +145,7 @@ def add_sums(chapter, rows):
 
 
 def pictures_of(rows):
-    """Returns a picture of CULLIDE beside FAR on a scene, at the least resolution where CULLIDE missed a pair and FAR was
+    """Returns a picture that compares CULLIDE and FAR on a scene, at the least resolution where CULLIDE missed a pair and FAR was
     measured. Prefers meshes, which are easier to see than slivers."""
     clear = rows.assign(missed=column(rows, "missed"))[rows.resolution >= LEAST_PIXELS]
     fars = clear[(clear.method == "far") & (clear.offset == "obb") & (clear.radius == "budget")]

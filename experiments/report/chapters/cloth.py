@@ -81,15 +81,15 @@ def add_energy(chapter, name, pairs):
 
 
 def culled_pairs(rows):
-    """Returns how many per cent of the pairs with overlapping boxes culling took away. Neighbours are not counted, since no
-    method takes them away. The accounting proved that each pair that was taken away is apart."""
+    """Returns the per cent of the pairs with overlapping boxes that were culled. Neighbours are not counted, since no method
+    culls them. The accounting proved that each culled pair is apart."""
     removed = total(rows, "by_predicates")
     left = total(rows, "candidates") - total(rows, "neighbour_candidates")
     return share(removed, removed + left)
 
 
 def add_power(chapter, rows, name, pairs, far):
-    """Adds what each method culled at one stiffness, and how many pairs were at risk in the frames of FAR."""
+    """Adds a finding: the share that each method culled at one stiffness, and the pairs at risk in the frames of FAR."""
     words = []
     for method, of in (("FAR", far), ("Boxes", pairs)):
         if column(of, "views_used").sum() > 0:
@@ -103,7 +103,7 @@ def add_power(chapter, rows, name, pairs, far):
 
 
 def add_agreement(chapter, courses):
-    """Adds whether FAR and boxes found the same number of pairs in the frames that both have. They must."""
+    """Adds a finding: whether FAR and boxes found equally many pairs in their common frames. The numbers must be equal."""
     both = differ = 0
     for pairs, far, _ in courses.values():
         for row in far.itertuples():

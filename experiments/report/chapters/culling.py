@@ -1,12 +1,12 @@
-"""How many candidates boxes of triangles, oriented boxes and the method boxes leave for each pair that collides.
+"""The number of candidates per colliding pair, for boxes of triangles, oriented boxes and the method boxes.
 
-Neighbours, triangles of an object that share a vertex, are in no count here: libraries leave them out.
+Neighbours (triangles of an object that share a vertex) are not counted here, since libraries leave them out.
 """
 from frame import *  # noqa: F403: a chapter uses most of it
 
 BOXES, ORIENTED, OURS = "boxes of triangles", "oriented boxes (FCL)", "Boxes"
 WAYS = [BOXES, ORIENTED, OURS]
-MOST_BOXES = 90  # per cent of the pairs of boxes; a method that keeps as many is little more than a join
+MOST_BOXES = 90  # per cent of the pairs of boxes; a method that keeps this many culls little
 
 
 def with_ways(rows):
@@ -32,7 +32,7 @@ def table_of(scenes):
 
 
 def add_join(chapter, scenes):
-    """Adds the scenes where the method boxes keeps nearly all that boxes of triangles keep, and the other scenes."""
+    """Adds the scenes where the method boxes keeps nearly all candidates of boxes of triangles, and the other scenes."""
     join, less = [], []
     for scene, ways in scenes.items():
         if BOXES in ways and OURS in ways:

@@ -1,4 +1,4 @@
-"""The same points of a study on several devices, beside each other. Added to any chapter."""
+"""Compares the same points of a study on several devices. The comparison is added to any chapter."""
 from frame import *  # noqa: F403: a chapter uses most of it
 from store import AXES
 

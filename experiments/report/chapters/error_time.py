@@ -48,8 +48,8 @@ class Group:
         return self.name + (f" ({words})" if words else "")
 
     def front(self):
-        """Returns the Pareto front, fastest first: the entries for which each faster entry has more errors. Of equal
-        entries only the first is in it."""
+        """Returns the Pareto front, fastest first. An entry is in the front if every faster entry has more errors. Of equal
+        entries, only the first is included."""
         out = []
         for entry in sorted(self.entries, key=lambda e: (e.ms, e.error)):
             if not out or entry.error < out[-1].error:
@@ -74,7 +74,7 @@ def groups_of(rows, scenes):
     for name, here in by(rows.assign(group=rows.scene.map(scene_base)), "group"):
         seeds = here.scene.nunique()
         timed = here[column(here, "total_ms").notna()]
-        known = scenes.get(name.split(":")[0], {})  # the entry of the program for the scene
+        known = scenes.get(name.split(":")[0], {})  # the program's description of the scene
         kind = "scan" if known.get("needs_meshes") else "smooth" if known and "seed" not in known else ""
         parts = by(timed, ["contestant", "resolution"])
         out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds], kind))
@@ -222,7 +222,7 @@ def equal_table(groups):
 # ---- findings
 
 def add_equal_times(chapter, groups):
-    """Adds in how many cases the best CULLIDE that takes no longer than FAR misses pairs."""
+    """Adds a finding: the number of cases in which the best CULLIDE that takes no longer than FAR misses pairs."""
     cases = [best for group in groups for _, best in equal_times(group)]
     if not cases:
         return
@@ -233,7 +233,7 @@ def add_equal_times(chapter, groups):
 
 
 def add_fastest(chapter, groups):
-    """Adds which methods are the fastest without an error, on the scenes that have valid times."""
+    """Adds a finding: the fastest methods without an error, on the scenes that have valid times."""
     timed = [group for group in groups if group.entries]
     if not timed:
         chapter.find("No time is valid, so no method is the fastest.")

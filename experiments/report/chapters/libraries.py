@@ -1,7 +1,7 @@
 """What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs, meshes and questions.
 
 A labelled pair of triangles is a question with its own answer. Pairs of a mesh are parts of one answer about the mesh. So
-counts of the two are never added.
+counts of labelled pairs and counts of pairs of meshes are never added.
 """
 import csv
 import os
@@ -14,7 +14,7 @@ SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "re
          "no_memory", "not_asked", "twice", "answered", "differing", "timed", "zero", "not_zero", "negative", "off", "points",
          "points_off"]
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.csv"), encoding="utf-8") as known_file:
-    # For each method of farcull: how it is called, and what its documentation says. Libraries have cards for this.
+    # For each method of farcull: the function that is called, and the documentation's words. Libraries have cards for this.
     DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
 CARD = ["library", "means", "called", "says", "source", "use"]
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
@@ -25,8 +25,8 @@ QUESTIONS = ["distance", "self", "inside", "clash"]
 # ---- rows and their sums
 
 def with_families(rows):
-    """Splits each row into a row for each of its families, with the sums over the family's parts, and the parts. The column
-    `asks` is pairs, meshes or one of QUESTIONS; `family` is a name such as pairs/random."""
+    """Splits each row into a row for each of its families. A new row has the family's parts and the sums over these parts. The
+    column `asks` is pairs, meshes or one of QUESTIONS; `family` is a name such as pairs/random."""
     out = []
     for row in rows.itertuples():
         families = {}
@@ -65,9 +65,9 @@ def differing(rows):
 
 
 def answers(rows, pairs, own):
-    """Returns missed pairs, of how many; false alarms, of how many. If `pairs` is true, both are of all answers. For meshes,
-    missed pairs are of the colliding pairs, and false alarms of the reported pairs, since nobody counts pairs that are
-    apart. own: counts only answers that the contestant's documentation promises."""
+    """Returns missed pairs and their total, then false alarms and their total. If `pairs` is true, both totals are all answers.
+    For meshes, the totals are the colliding pairs and the reported pairs, since pairs that are apart are not counted. own: counts
+    only answers that the contestant's documentation promises."""
     asked, missed, false = (total(rows, name) for name in (
         ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
     return missed, asked, false, asked if pairs else asked - missed + false
@@ -121,7 +121,7 @@ def kinds_table(rows):
 
 
 def faults_of(rows, asks):
-    """Returns, of the answers that the documentation promises, how many were wrong, and how many there are."""
+    """Returns two counts of the answers that the documentation promises: the wrong answers, and all of these answers."""
     of = rows[rows.asks == asks]
     if asks in ("pairs", "meshes"):
         missed, asked, false, reported = answers(of, asks == "pairs", True)
@@ -169,7 +169,7 @@ def uses_table(rows):
 
 
 def questions_table(rows):
-    """Returns a table of the faults of distances, with a column for each kind."""
+    """Returns a table of the errors of distances, with a column for each kind."""
     names = {"zero": "zero", "not zero": "not_zero", "negative": "negative", "off": "off", "points": "points",
              "points off": "points_off"}
     return Table(
@@ -237,7 +237,7 @@ def time_figure(rows):
 # ---- findings
 
 def add_ours(chapter, rows):
-    """Adds findings about the methods of farcull. If a method promises, a wrong or missing answer breaks its promise."""
+    """Adds findings about the methods of farcull. A wrong or missing answer breaks the promise of a method that has one."""
     kept, pairs, colliding, meshes, questions = [], [], [], [], 0
     for name, of in by(promising(rows), "method"):
         silent = without_answer(of)
@@ -276,7 +276,7 @@ def add_ours(chapter, rows):
 
 
 def add_others(chapter, rows, asks):
-    """Adds which libraries and tests are right by their own documentation, and which ones err most and least."""
+    """Adds findings: the libraries and tests that are right by their own documentation; those that err most and least."""
     right, wrong, what = [], [], "pairs of triangles" if asks == "pairs" else asks
     for name, of in by(rows[(rows.library != "farcull") & (rows.asks == asks)], "method"):
         bad, asked = faults_of(of, asks)
@@ -299,7 +299,7 @@ def fill(chapter, study):
         return
     pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
     add_ours(chapter, rows)
-    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions
+    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions of a library
         if of.library.nunique() > 1:
             chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
     for asks in ("pairs", "meshes"):

@@ -1,9 +1,9 @@
-"""Compares predicted misses with those of runs, each at several positions of the grid of pixels."""
+"""Compares predicted misses with measured misses. Each run is measured at several positions of the pixel grid."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-FACTOR = 1.5    # a prediction within this factor of what was measured counts as right
-FEWEST = 20     # with fewer missed pairs, the chance of single runs is larger than the factor
-# Scenes that were looked at while the formula was found. All other scenes and seeds test the formula.
+FACTOR = 1.5    # a prediction within this factor of the measured value counts as right
+FEWEST = 20     # with fewer missed pairs, chance alone can exceed the factor
+# Scenes that were examined while the formula was found. All other scenes and seeds test the formula.
 LOOKED_AT = ["random-soup", "needles:100", "slivers:200:1e3", "crowd:200", "shells:8", "two-tori", "tree-leaves:100",
              "torii:720"]
 WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
@@ -66,7 +66,7 @@ def figure_of(rows):
 
 
 def resolution_figure(rows):
-    """Draws the measured and the predicted share of missed pairs against resolution. The share falls in some scenes only."""
+    """Draws the measured and the predicted share of missed pairs against resolution. The share falls only in some scenes."""
     out = Figure("model-resolution", "Missed pairs fall with resolution as the model says",
                  "CULLIDE until a round changes nothing. Points: the mean over positions, with the fewest and the "
                  "most missed pairs of a position. Lines: the prediction. Where contacts end in corners, the share "

@@ -53,7 +53,7 @@ def add_comparison(chapter, rows, a, b):
 
 
 def add_order(chapter, rows):
-    """Adds whether the exact offset keeps more than the box anywhere. It must not, since its solid is inside the box."""
+    """Adds findings: where the exact offset keeps more than the box. This must not happen: its solid is inside the box."""
     pairs = beside(rows, EXACT, BOX)
     ours, theirs = (column(pairs, "kept_triangles" + end).fillna(0) for end in ("", "_b"))
     for row in pairs[ours > theirs].itertuples():

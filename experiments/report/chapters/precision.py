@@ -21,7 +21,7 @@ def with_axes(rows):
 
 
 def most(rows, name):
-    """Returns the largest distance; infinite if the distance of a row is not a number."""
+    """Returns the largest value of the column `name`; infinite if a row lacks a number there."""
     return max(0.0, column(rows, name).fillna(math.inf).max())
 
 
@@ -59,10 +59,10 @@ def table_of(rows):
 
 
 def add_violations(chapter, rows):
-    """Adds each violation of fragment depth at the budget radius, unless its row promises (then it is reported already)."""
+    """Adds each violation of fragment depth at the budget radius, except for rows that break a promise, reported already."""
     for row in rows[rows.line == OURS].itertuples():
         violations = number(row, "no_sample") + number(row, "not_bounding")
-        if violations and not breaks(row):  # else reported already
+        if violations and not breaks(row):  # rows that break a promise are reported already
             chapter.find_broken(
                 f"fragment depth at the budget radius, {row.bits}, {row.resolution} px, scene {row.depth:g} px deep: "
                 f"{of_all(violations, number(row, 'points'))} points of the generator \"{row.generator}\" have no "
@@ -74,7 +74,7 @@ def add_deep_windows(chapter, rows):
     a pixel, so all depths of a contact become one number in the buffer."""
     ours = rows[rows.line == OURS]
     chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
-    step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # a step of 2^-16, not of 2^-24
+    step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # 16 bits: a step is 2^-16, not 2^-24
     deep = ours[step > chord]
     if len(deep):
         lost = total(deep, "no_sample") + total(deep, "not_bounding")

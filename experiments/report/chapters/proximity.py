@@ -1,5 +1,5 @@
-"""Potential neighbour sets: their sizes, what a grid loses of them, both numbers over frames, and time against the number
-of objects. Then errors of distances.
+"""Potential neighbour sets: their sizes, the neighbours that a grid loses, both numbers over frames, and time against the
+number of objects. Then errors of distances.
 
 A row is about the sets that a method leaves, or about the distances that a contestant returns. At rest (frame -1) the
 sets of a scene differ by seed and resolution, in motion by frame.

@@ -102,9 +102,9 @@ def lemma_table(lemmas):
 
 
 def add_lemmas(chapter, lemmas):
-    """Adds violations of the lemmas at the budget radius and above, and at the published radius. With fragment depth the
-    lemmas are proved, so a violation breaks a promise even if its row promises nothing. add_promises() has reported rows
-    for which breaks() is true."""
+    """Adds violations of the lemmas at the budget radius and above, and at the published radius. With fragment depth the lemmas
+    are proved, so each violation breaks a promise, even in a row without a promise. add_promises() has reported rows for which
+    breaks() is true."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")
@@ -146,7 +146,7 @@ def rate_of_rows(rows):
 
 def add_headline(chapter, runs, placements):
     """Adds how often the published radius misses pairs in scenes that were not constructed against it, and how often in
-    scenes that were. Comes first, since the rest is about constructed points."""
+    constructed scenes. This finding comes first, since all others are about constructed points."""
     published = runs[runs.published & (runs.depth_mode == "fragment")]
     constructed = published[published.scene == "pixel-corners"]
     natural = published[published.scene != "pixel-corners"]
@@ -159,7 +159,7 @@ def add_headline(chapter, runs, placements):
         chapter.find("On scenes that were not constructed against it, the published radius missed "
                      f"{missed_of(natural)} colliding pairs in "
                      f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
-        # If smaller radii miss nothing either, these scenes say nothing about the radius.
+        # If smaller radii miss nothing either, these scenes show nothing about the radius.
         smaller = runs[(runs.factor == 0.9) & (runs.depth_mode == "fragment")]
         bare = runs[(runs.factor == 0) & (runs.depth_mode == "fragment")]
         if len(smaller) and len(bare):

@@ -8,7 +8,7 @@ FAMILIES = {"slivers": ("slivers", "aspect"), "mixed": ("mixed sizes", "ratio of
             "offset": ("far from the origin", "offset (px)"), "scale": ("scaled", "scale")}
 STRICT = {"CULLIDE, one round, all views, conservative": "CULLIDE, strict"}
 CLOTH_SELF, CLOTH_APART = "cloth against itself and a sphere", "cloth on a sphere"
-LEAST_CULLED = 30  # per cent of the triangles; a family where less is culled tests little
+LEAST_CULLED = 30  # per cent of the triangles; a family in which less is culled tests little
 WHY_LITTLE = {CLOTH_SELF: "nearly every triangle of a cloth touches neighbours, which are left to exact tests"}
 
 
@@ -51,15 +51,15 @@ def number_text(x):
 
 
 def missed_share(rows):
-    """Returns the missed per cent of the colliding pairs. If the rows count pairs whose contact varies, only these pairs
-    are used."""
+    """Returns how many per cent of the colliding pairs were missed. If the rows count pairs whose contact varies, only these
+    pairs are used."""
     varies = column(rows, "varying").notna().any()
     return share(*(total(rows, name) for name in (("missed_varying", "varying") if varies else ("missed", "colliding"))))
 
 
 def label(series):
-    """Puts the name of each series beside the point where it passes half its height. Series that stay at 0 get one text with
-    all their names."""
+    """Puts the name of each series beside the first point that reaches half of the series' height. Series that stay at 0 get one
+    text with all their names."""
     still = [s for s in series if not any(y > 0 for y in s.y)]
     for s in series:
         high = max((y for y in s.y if y == y), default=0)
@@ -116,7 +116,7 @@ def table_of(rows, tracks):
 
 
 def add_failures(chapter, rows):
-    """Adds which pairs methods that promise nothing miss or report wrongly."""
+    """Adds findings: how many pairs are missed or wrongly reported by methods without a promise."""
     for method, of in by(rows[~rows.index.isin(promising(rows).index) & (rows.method != "exact")], "contestant"):
         wrong = total(of, "wrong")
         more = f", and reported {counted(wrong, 'pair', 'pairs')} that do not collide" if wrong else ""
@@ -124,7 +124,7 @@ def add_failures(chapter, rows):
 
 
 def add_rises(chapter, tracks):
-    """Adds at which value of a family each method begins to miss contacts that vary."""
+    """Adds findings: from which value of a family on each method misses contacts that vary."""
     for family, methods in families_of(tracks):
         words = []
         for method, places in methods if family in FAMILIES.values() else []:
@@ -136,7 +136,8 @@ def add_rises(chapter, tracks):
 
 
 def add_power(chapter, rows, tracks, names):
-    """Adds where 0 missed pairs say little: a method that promises culled too little, or no pair was at risk."""
+    """Adds findings where 0 missed pairs mean little: a method with a promise culled too few triangles, or no pair was at
+    risk."""
     for family, methods in families_of(tracks):
         little, safe = [], []
         for method, places in methods:

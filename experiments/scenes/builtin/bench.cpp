@@ -1,5 +1,5 @@
-// Scenes for benchmarks: a field of any size, needles whose boxes overlap by the million, and
-// scenes that one number takes to an extreme.
+// Scenes for benchmarks: a field of blobs of any size, needles with millions of overlapping boxes,
+// and scenes with an extreme aspect ratio, gap or ratio of sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -20,8 +20,8 @@ constexpr double kJitter = 0.3;            // largest shift of a blob in its cel
 constexpr std::size_t kShapes = 16;
 constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
 
-// Makes the blobs of a field one after the other. Their number brings the triangles nearest to the
-// wanted number; it is at least 1.
+// Makes the blobs of a field one after the other. Chooses the number of blobs, at least 1, whose
+// triangles are nearest to the wanted number.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -61,9 +61,9 @@ class Blobs {
 
 constexpr double kLength = 4700;  // length of a needle
 constexpr double kWidth = 0.002;
-constexpr double kBending = 1e-4;  // largest angle of a needle with Frame::along, radians
+constexpr double kBending = 1e-4;  // largest angle between a needle and Frame::along, radians
 constexpr double kSpan = 24000;    // extent of a layer across its needles
-constexpr double kShear = 1;       // shift of a needle along itself / its place across
+constexpr double kShear = 1;       // shift along the needles per unit of shift across them
 constexpr double kGap = 1;         // distance of the two layers
 
 // An orthonormal frame whose first axis is the direction of needles.
@@ -92,8 +92,8 @@ Vec3 in_layer(const Frame& frame, int object, Random& random) {
   return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
-// Makes two layers. Needle i of a layer has frame i modulo the number of frames. Every eighth
-// needle of the second layer is moved so that it crosses a needle of the first layer.
+// Makes two layers of needles, one per object. Needle i of a layer has frame i modulo the number of
+// frames. Every eighth needle of the second layer crosses a needle of the first layer.
 Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
                         std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
   Random random(seed);
@@ -134,7 +134,7 @@ Vec3 across(const Vec3& along, Random& random) {
   }
 }
 
-// Returns a triangle in a random direction. Its longest side is 1, the height over this side is
+// Returns a triangle in a random direction. Its longest side is 1, and its height over this side is
 // 1 / aspect.
 Corners sliver(double aspect, Random& random) {
   const Vec3 along = random.direction();
@@ -198,8 +198,8 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Three of four slivers cross a sliver of the first object. The fourth is moved off such a
-    // sliver by twice its own height.
+    // Moves each new sliver so that it crosses the first object's last sliver. Moves every fourth
+    // one further, by twice its height, in a random direction.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -226,8 +226,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// The sheets have the slope z = x/4 + y/8. Heights and tilts are multiples of gap / 8, and the gap
-// is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
+// Untilted sheets have the slope z = x/4 + y/8. Heights and tilts are multiples of gap / 8, and the
+// gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
   constexpr std::uint32_t kCells = 8;  // cells along a side of a sheet
@@ -247,7 +247,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1). There the ulp is 2^-53, so they are exact.
+// All coordinates are multiples of 2^-53 in [1/2, 1). The ulp there is 2^-53, so they are exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -259,8 +259,8 @@ BuiltScene make_gap(const SceneParameters& parameters) {
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
     // Returns a point of the cell. u and v count eighths of the cell along two axes, `rise` counts
-    // quarters along the third axis. Without the slope u / 32 + v / 64, some triangles would be
-    // edge-on in a view along an axis, and would have no image.
+    // quarters along the third axis, and `by` is added. The slope u / 32 + v / 64 keeps every
+    // triangle from being edge-on in a view along an axis, where it would cover no pixel.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;
@@ -272,7 +272,7 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     if (i / 3 % 2 == 0) {  // a vertex over a face
       lower.push_back({at(1, 1, 0, 0), at(7, 1, 0, 0), at(1, 7, 0, 0)});
       upper.push_back({at(3, 3, 0, gap), at(6, 1, 1, gap), at(1, 6, 1, gap)});
-    } else {  // an edge crosses over an edge
+    } else {  // an edge over an edge
       lower.push_back({at(1, 4, 0, 0), at(7, 4, 0, 0), at(4, 4, -1, 0)});
       upper.push_back({at(4, 1, 0, gap), at(4, 7, 0, gap), at(4, 4, 1, gap)});
     }

@@ -1,5 +1,5 @@
-// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, a part cut in
-// two.
+// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, and a part
+// that is cut in two.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -56,8 +56,8 @@ void keep_distance(Vec3& a, Vec3& b, double least, double most) {
   b -= step;
 }
 
-// Gives neighbours in the lattice the distance that they have in the flat sheet, by position based
-// dynamics (Müller et al. 2007). Keeps points i and i + 2 of a row apart, which limits bending.
+// Restores the flat sheet's distances between neighbours in the lattice, by position based dynamics
+// (Müller et al. 2007). Keeps points i and i + 2 of a row apart, which limits bending.
 void relax(Lattice& sheet, int rounds) {
   constexpr double kBend = 1.5;  // least distance of points i and i + 2 of a row, in units of h
   const double h = 1.0 / sheet.spans;
@@ -83,8 +83,8 @@ void relax(Lattice& sheet, int rounds) {
   }
 }
 
-// Makes a random smooth map of the unit square into a ball. Relaxes it until it hardly stretches
-// the sheet.
+// Makes a random smooth map of the unit square into a ball, then relaxes the map until it hardly
+// stretches the sheet.
 Lattice crumple(Random& random) {
   constexpr std::uint32_t kFolds = 10;  // spans of the random map: more spans make smaller folds
   constexpr std::uint32_t kSpans = 84;  // spans of the sheet that is relaxed
@@ -140,9 +140,9 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
   return out;
 }
 
-// Returns balls of radius 0.5 to 1, which settled in a box without a lid. The mesh of a ball lies
-// inside the ball. So that meshes touch, balls in contact are nearer than the sum of their radii,
-// by the fraction kDeep.
+// Returns balls of radius 0.5 to 1 that have settled in a box without a lid. The mesh of a ball
+// lies inside the ball, so the meshes of balls that just touch are apart. So balls in contact are
+// nearer than the sum of their radii, by the fraction kDeep.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;
@@ -176,20 +176,20 @@ std::vector<Ball> heap(std::uint64_t count, Random& random) {
   return balls;
 }
 
-// The part with a bore, cut in two. It is triangulated as CAD programs do it: flat faces with a
-// round hole are fans of slivers; walls are quads of the part's full length, split in two.
+// The part with a bore, cut in two. Its triangles are like those of CAD programs: a flat face with
+// a round hole is a fan of slivers; a wall is quads of the part's full length, split in two.
 
 // Vertices around a face, counterclockwise seen from outside the part.
 using Loop = std::vector<std::uint32_t>;
 
 struct Circle {
-  Vec3 centre, u, v;  // u and v are unit vectors in its plane
+  Vec3 centre, u, v;  // u and v are unit vectors in the circle's plane
   double radius;
 };
 
 class Part {
  public:
-  bool inside_out = false;  // the added triangles face the other way
+  bool inside_out = false;  // the triangles added from now on get the opposite orientation
 
   Vec3 at(std::uint32_t vertex) const { return vertices_[vertex]; }
   std::uint32_t point(const Vec3& p) {
@@ -215,9 +215,9 @@ class Part {
       quad({from[i], from[next], to[next], to[i]});
     }
   }
-  // Fills the region between a loop and a round hole in it. Each side of the hole is joined to the
-  // corner of the loop that is nearest in angle. Precondition: segments from the hole's middle to
-  // the loop cross no other side of the loop.
+  // Triangulates the region between a loop and a round hole inside the loop. Joins each side of the
+  // hole to the corner of the loop that is nearest in angle. Precondition: segments from the hole's
+  // middle to the loop cross no other side of the loop.
   void holed(const Loop& outer, const Loop& hole) {
     Vec3 middle = Vec3::Zero();
     for (const std::uint32_t v : hole) middle += at(v) / static_cast<double>(hole.size());
@@ -269,8 +269,8 @@ struct Slope {
   Vec3 over(double x, double y) const { return {x, y, height + along_x * x + along_y * y}; }
 };
 
-// Returns a block over a square of side 1, between the planes `below` and `above`, with a bore
-// through both planes. The face in a plane is a fan of slivers around the end of the bore.
+// Returns a block over a square of side 1, between the planes `below` and `above`. A bore goes
+// through both planes. The block's face in each plane is a fan of slivers around the bore.
 Part bored_block(const Bore& bore, const Slope& below, const Slope& above) {
   const auto rim = [&](Part& part, const Slope& face) {
     return part.circle({face.over(bore.middle.x(), bore.middle.y()),
@@ -339,12 +339,12 @@ BuiltScene make_cad_cut(const SceneParameters& parameters, std::uint64_t seed) {
   const Vec3 middle(random.between(-0.05, 0.05), random.between(-0.05, 0.05), 0);
   const Bore bore{middle, random.between(0.3, 0.44), random.unit(), sides};
   const Slope cut{0, 1.5, 0.3};
-  // The axes are oblique, so that the boxes of slivers are large.
+  // The part's axes are oblique, so that slivers have large bounding boxes.
   const Vec3 z = (Vec3(1, 0.9, 0.8) + random.in_cube(0.1)).normalized();
   const Vec3 x = across(z, 1, random);
   const Vec3 y = z.cross(x);
   const Mesh lower = bored_block(bore, {-kLength, 0, 0}, cut).placed(x, y, z);
-  // Tilts the upper half about the diagonal x + y. The angle is so small that its tangent is kTilt.
+  // Tilts the upper half about the diagonal x + y, by an angle whose tangent is kTilt.
   const Vec3 tilted = (z + kTilt * (x - y) / std::sqrt(2.0)).normalized();
   const Vec3 along = (x - x.dot(tilted) * tilted).normalized();
   Mesh upper = bored_block(bore, cut, {kLength, 0, 0}).placed(along, tilted.cross(along), tilted);

@@ -1,5 +1,5 @@
-// A cloth that hangs in a funnel in pleats. A larger scene has more triangles in the cloth; the
-// triangles of the funnel stay large.
+// A cloth that hangs in pleats in a funnel. A larger scene has more triangles in the cloth only, so
+// the triangles of the funnel stay large.
 #include <algorithm>
 #include <cmath>
 
@@ -17,24 +17,24 @@ std::uint32_t cells_for(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
 }
 
-// The funnel stands upright, with a pipe below and a cone above. The cloth in it is a square whose
-// middle was pulled down the pipe. The unit of length is half the side of the cloth.
+// The funnel is upright, with a pipe below and a cone above. The cloth in the funnel is a square
+// whose middle was pulled down into the pipe. The unit of length is half the side of the cloth.
 constexpr double kCap =
-    0.22;  // pleats grow between 0.3 and 1.3 times this distance from the middle
+    0.22;  // the pleats grow from 0.3 to 1.3 times this distance from the cloth's middle
 constexpr double kPipe = 0.62;   // distance from the cloth's middle at which the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
 
-// The cloth at one distance from its middle. Seen from above, its pleats are a sine-generated
-// curve: the direction swings by +-`swing` radians. So the curve is as long as the flat cloth at
-// this distance, but goes around a circle of the smaller mean radius.
+// The points of the cloth at one distance from its middle. Seen from above, they form a
+// sine-generated curve: its direction swings by +-`swing` radians. The curve is as long as the flat
+// cloth's circle of this distance, but goes around a smaller circle.
 struct Ring {
   double radius = 0, height = 0;             // mean values
-  std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of length 1
+  std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of unit length
 };
 
-constexpr std::uint32_t kSteps = 64;  // steps of a pleat in Ring::pleat
+constexpr std::uint32_t kSteps = 64;  // segments of the curve in Ring::pleat
 constexpr std::uint32_t kRings = 600;
 constexpr double kReachOfCloth = 1.5;  // distance of the last ring from the middle; above sqrt(2)
 
@@ -57,7 +57,7 @@ std::vector<std::array<double, 2>> pleat_of(double wanted) {
     const double turned = lo * std::sin(kTurn * (k + 0.5) / kSteps);
     out[k + 1] = {out[k][0] + std::cos(turned) / kSteps, out[k][1] + std::sin(turned) / kSteps};
   }
-  // Moves the curve, so that its mean distance outward is 0.
+  // Shifts the curve so that its mean outward distance is 0.
   double mean = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) mean += out[k][1] / kSteps;
   for (auto& [along, outward] : out) outward -= mean;
@@ -85,8 +85,8 @@ std::vector<Ring> rings() {
   return out;
 }
 
-// Returns the place of a point of the hung cloth. In the flat square, the point has the distance s
-// from the middle and the angle `turns`, in turns.
+// Returns the position of a point of the hung cloth. In the flat square, the point is at distance s
+// from the middle and at angle `turns`, in turns. uneven: shift of the pleats, in pleats.
 Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
   const double row = s / kReachOfCloth * kRings;
   const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);
@@ -126,7 +126,7 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid
     pipe = std::max(pipe, r - slope * std::max(0.0, p.z() - begin));
     top = std::max(top, p.z());
   }
-  // The rings are polygons, whose sides are nearer to the axis than their corners.
+  // A ring's sides are nearer to the axis than its corners. So the corners are moved outward.
   const double widen = 1 / std::cos(kTurn / 2 / quads.around);
   std::vector<std::array<double, 2>> profile;  // radius, height
   for (std::uint32_t k = 0; k <= quads.pipe_rings; ++k)
@@ -158,7 +158,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr std::size_t kWaves = 3;
   Random random(seed);
   const double turned = random.unit();
-  std::array<std::array<double, 3>, kWaves> waves;  // height in pleats, phase, twist
+  std::array<std::array<double, 3>, kWaves> waves;  // amplitude in pleats, phase, twist
   for (auto& [height, phase, twist] : waves) {
     height = random.between(0.15, 0.3);
     phase = random.unit();
@@ -171,7 +171,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   Mesh mesh = grid(cells);
   const std::vector<Ring> table = rings();
   for (Vec3& p : mesh.vertices) {
-    // Shifted, so that the middle of the cloth lies on no grid line.
+    // Shifts the cloth, so that its middle lies on no grid line.
     const double x = 2 * p.x() - 1 + 0.013, y = 2 * p.y() - 1 + 0.007;
     const double s = std::sqrt(x * x + y * y);
     const double angle = std::atan2(y, x) / kTurn + 0.5;

@@ -34,8 +34,8 @@ Scene make_two_spheres() {
 }
 
 Scene make_two_tori() {
-  // The second ring is moved by 1.5, and passes the first ring at a distance of 0.5. So the rings
-  // are linked, and the tubes around them, of radius 0.35, cross.
+  // The two rings are linked, and their centre circles are 0.5 apart. So the tubes around these
+  // circles, of radius 0.35, intersect.
   const Mesh mesh = torus(1, 0.35, 100, 50);
   return two_objects("two-tori", "first", mesh, "second", mesh,
                      {.scale = {},
@@ -68,7 +68,7 @@ Corners axial_needle(std::uint32_t k, double width, Random& random) {
   return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
 }
 
-// Moves two of the four objects: the second object turns; each sliver of the fourth object slides
+// Moves two of the four objects. The second object turns. Each sliver of the fourth object slides
 // along its long axis.
 Motion turning_and_sliding(const Scene& scene) {
   return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
@@ -90,8 +90,8 @@ Motion turning_and_sliding(const Scene& scene) {
   };
 }
 
-// size: number of slivers in each of the two oblique objects. These slivers are the first ones of
-// any larger scene, bit for bit. Each of the two objects along the axes has 3/8 as many slivers.
+// size: number of slivers in each of the two oblique objects. A larger scene begins with the same
+// slivers, bit for bit. Each of the two objects along the axes has 3/8 as many slivers.
 BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
@@ -99,8 +99,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
-    // Of four slivers, one has a random place. Two cross a sliver of the first object. One is moved
-    // off a sliver of the first object by twice the smaller width.
+    // Of every four slivers, three are placed so that they cross a sliver of the first object. One
+    // of the three is then moved away, by twice the smaller width. The fourth has a random place.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -112,8 +112,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Two objects along the axes. Each sliver lies along x, y or z, and crosses a sliver of the other
-  // object. All nine combinations of two axes occur in turn.
+  // Makes two objects whose slivers are parallel to the axes. Each sliver crosses a sliver of the
+  // other object. All nine combinations of two axes occur in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
   std::vector<Corners> fourth;
@@ -140,7 +140,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
 Scene make_degenerate() {
   constexpr double kHair = 0x1p-40;
   const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  // The comment of each pair says how the triangles meet. Most coordinates are whole numbers.
+  // The comment at each pair names the kind of contact. Most coordinates are whole numbers.
   const std::vector<std::pair<Corners, Corners>> cases = {
       {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
       {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge
@@ -170,9 +170,9 @@ Scene make_degenerate() {
       {face, {Vec3(1, 1, -2), Vec3(1, 1, 2), Vec3(1 + kHair, 1, 2)}},  // sliver through face
       {face, {Vec3(1, 1, 0), Vec3(1, 3, 4), Vec3(1 + kHair, 3, 4)}},   // sliver, vertex on face
   };
-  // Each case appears three times in a grid of cells: as it is, with the second triangle higher by
-  // kHair, and with this triangle lower by kHair. kHair is far above an ulp, so every coordinate is
-  // exact.
+  // Each case appears three times in a grid of cells: unchanged, with the second triangle raised by
+  // kHair, and with the second triangle lowered by kHair. kHair is far above an ulp, so every
+  // coordinate is exact.
   std::vector<Corners> first;
   std::vector<Corners> second;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -190,8 +190,8 @@ Scene make_ground(std::uint64_t seed) {
   Random random(seed);
   SceneBuilder scene("ground", "ground");
   for (int i = 0; i < 5; ++i) {
-    // The centre lies about one radius above the ground. So some blobs are sunk into the ground,
-    // and others touch nothing.
+    // A blob's centre is about one radius above the ground. So some blobs intersect the ground, and
+    // others touch nothing.
     const Vec3 at(1.6 * i - 3.2, random.between(-1, 1), random.between(0.7, 1.5));
     const Mesh mesh = blob(3, random);
     scene.add(mesh, "blob" + std::to_string(i), Split::kNone, random.anywhere(at));

@@ -1,7 +1,7 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks. Two scenes are from papers, and
-// have a dragon with divided triangles. A bunny falls through the dragon (FAR: Govindaraju, Lin and
-// Manocha, VRST 2004), or the dragon breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and
-// Manocha, Graphics Hardware 2003).
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Two scenes are from papers, and use
+// a dragon with refined triangles. In one, a bunny falls through the dragon (FAR: Govindaraju, Lin
+// and Manocha, VRST 2004). In the other, the dragon breaks into pieces (CULLIDE: Govindaraju,
+// Redon, Lin and Manocha, Graphics Hardware 2003).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdlib>
@@ -36,8 +36,8 @@ constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
 
-// Returns a placement for the second mesh. Its box gets the diagonal and the centre of the box of
-// the first mesh.
+// Returns a placement for the second mesh. The placed mesh's box has the diagonal and the centre of
+// the first mesh's box.
 Placement onto(const Mesh& first, const Mesh& second) {
   const double scale = diagonal(bounds(first)) / diagonal(bounds(second));
   return {.scale = Vec3(Vec3::Constant(scale)),
@@ -68,8 +68,8 @@ Scene make_dragon_bunny() {
   return two_objects("dragon-bunny", "dragon", dragon, "bunny", bunny, onto(dragon, bunny));
 }
 
-// Returns a mesh and a copy of it. The copy is moved by `diagonals` diagonals along (2, 3, 6). This
-// vector has length 7 and is parallel to no axis.
+// Returns a mesh and a copy that is moved by `diagonals` diagonals of the mesh's box along (2, 3,
+// 6). This vector has length 7 and is parallel to no axis.
 Scene with_copy(const std::string& name, const char* file, const char* first, const char* second,
                 double diagonals) {
   const Mesh mesh = packaged(file);
@@ -88,12 +88,12 @@ Scene self_colliding(const std::string& name, const char* file) {
 
 constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
 constexpr std::uint32_t kPieces = 200;
-constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times of the first and the last piece
+constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // first and last time a piece comes off
 
 struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;
-  Vec3 middle;      // middle of its box
+  Vec3 middle;      // middle of the piece's box
   double late = 0;  // the time when the piece comes off
   Vec3 way;         // velocity, without the speed of falling
   Vec3 axis;        // axis of its rotation
@@ -169,8 +169,8 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
   return out;
 }
 
-// Makes the scene after the first `off` pieces have come off. The objects are the rest of the
-// dragon, then these pieces, where they were in the dragon.
+// Sets the objects of the scene after the first `off` pieces have come off: the rest of the dragon,
+// then these pieces. All objects are where they were in the whole dragon.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();
@@ -187,7 +187,7 @@ void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
 void break_at(const Breaking& dragon, double time, Scene& scene) {
   std::size_t off = 0;  // the last piece stays
   while (off + 1 < kPieces && dragon.pieces[off].late <= time) ++off;
-  // The number of objects determines the triangles.
+  // The number of objects determines which triangles the scene has.
   if (scene.objects.size() != off + 1) set_topology(dragon, off, scene);
   std::size_t v = scene.vertices.size();
   for (std::size_t s = 0; s < off; ++s) v -= dragon.pieces[s].part.vertices.size();

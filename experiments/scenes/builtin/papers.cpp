@@ -1,5 +1,5 @@
-// Scenes that move. Most have the shapes, counts and motions of scenes in papers, but are
-// generated: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
+// Scenes that move. Most imitate the shapes, counts and motions of scenes in papers, with generated
+// meshes: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
 // Hardware 2003); falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST
 // 2004).
 #include <Eigen/Geometry>
@@ -275,9 +275,9 @@ Mesh sheet() {
 
 double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
 
-// size: number of sheets. All heights are multiples of 2^-40 below 2^10, so sums with the gap,
-// 2^-34, are exact. A sheet of the stack is an exact copy of the sheet below, moved up by the gap,
-// so the two sheets never meet. A flap rises by half a gap, so it does not meet the sheet above.
+// size: number of sheets. All heights are multiples of 2^-40 below 2^10, so sums with the gap
+// (2^-34) are exact. A sheet of the stack is an exact copy of the sheet below, moved up by the gap.
+// So the two sheets never meet. A flap rises by half a gap, so it does not meet the sheet above.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();
@@ -336,7 +336,7 @@ FrameNotes notes_of(const ClothReport& report) {
           .warning = report.warning};
 }
 
-// size: wanted number of triangles, which a square grid meets closely; second: stiffness, N/m.
+// size: wanted number of triangles (the grid has nearly as many); second: stiffness, N/m.
 BuiltScene make_cloth(const SceneParameters& parameters) {
   ClothSettings settings;
   settings.triangles = parameters.size;

@@ -22,7 +22,7 @@ struct ObjectAtRest {
   std::vector<std::uint32_t> vertices;  // each vertex once
 };
 
-// The scene without frames. A motion computes the vertices of each instant from this scene.
+// The scene without frames. A motion computes the vertices of each instant from these vertices.
 struct Rest {
   std::vector<Vec3> vertices;
   std::vector<ObjectAtRest> parts;
@@ -352,7 +352,7 @@ const Scene& MovingScene::at(long frame) {
     validate(plain_, plain_.name);
   } else {
     shown = &changed_;
-    changed_ = plain_;  // assigned, so that the vectors keep their memory
+    changed_ = plain_;  // copy assignment, which reuses the memory of the vectors
     for (const SceneChange& change : changes_) apply(change, changed_);
   }
   for (Object& object : shown->objects) object.self = object.self || self_;

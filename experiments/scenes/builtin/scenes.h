@@ -1,5 +1,5 @@
-// Scenes that need no file of the user: generated ones, which are the same on every run, and scenes
-// made of the packaged meshes. Some of them move.
+// Built-in scenes, which need no file of the user. Some are generated, and are the same on every
+// run. Others are made of the packaged meshes. Some scenes move.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace farcull {
 
-/// The numbers in the name of a scene, as in crowd:3000:0.2. If a number is left out, it has its
-/// usual value; if the scene takes no such number, it is 0.
+/// The numbers in the name of a scene, as in crowd:3000:0.2. A number that is left out has its
+/// usual value. A number that the scene does not take is 0.
 struct SceneParameters {
   std::uint64_t size = 0;
   double second = 0;
-  std::optional<std::uint64_t> seed = {};  // the N of @seedN; empty: the scene has its own seed
+  std::optional<std::uint64_t> seed = {};  // the N of @seedN; empty: the scene uses its own seed
 };
 
 /// The range of the first number, as in field:1000000.
@@ -40,7 +40,7 @@ struct Instant {
   double time = 0;  // 0 to 1
 };
 
-/// The numbers and the warning that a motion gives for a frame.
+/// Numbers, such as energies, and a warning that a motion reports for a frame.
 struct FrameNotes {
   std::vector<std::pair<std::string, double>> values;  // the same names in every frame
   std::string warning;                                 // empty: no warning
@@ -48,24 +48,24 @@ struct FrameNotes {
 
 /// Moves the scene to an instant. The scene is BuiltScene::scene or the result of an earlier call.
 /// If triangles and objects do not change, only Scene::vertices is written, in place. The result
-/// does not depend on earlier calls; a simulation that goes back computes all frames from 0 on.
-/// Throws Error if the scene cannot be computed.
+/// does not depend on earlier calls. A simulation that is set to an earlier frame recomputes all
+/// frames from 0 on. Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {
-  Scene scene;    // the scene without frames: used if the user names no frames
+  Scene scene;    // the scene that is used if the user names no frames
   Motion motion;  // empty: nothing moves
 };
 
 struct BuiltinScene {
   std::string name;
   std::string description;                 // one line
-  std::uint32_t objects = 0;               // number at the usual size
-  std::uint32_t triangles = 0;             // number at the usual size
+  std::uint32_t objects = 0;               // number of objects at the usual size
+  std::uint32_t triangles = 0;             // number of triangles at the usual size
   std::string motion = {};                 // one line; empty if nothing moves
   std::optional<SceneSize> size = {};      // empty: the scene has one size only
   std::optional<SceneSecond> second = {};  // empty: no second number
-  bool costly = false;            // its usual size is for farcull bench; no test uses that size
+  bool costly = false;            // true: at its usual size, the scene is too large for tests
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random
@@ -76,24 +76,24 @@ struct BuiltinScene {
   Scene make() const { return build(usual()).scene; }
 };
 
-/// The change of a scene by a suffix. Every vertex is multiplied by `scale` and moved by
-/// `translate`, in double. If `ground` is set, an object "ground" is then added: two triangles with
-/// these corners.
+/// The change that a suffix makes to a scene. Every vertex is multiplied by `scale` and moved by
+/// `translate`, in double. Then, if `ground` is set, an object "ground" is added: two triangles
+/// with these corners.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
   std::optional<std::array<Vec3, 4>> ground = {};
 };
-/// Throws Error naming the scene if a coordinate is not finite afterwards.
+/// Applies the change. Throws Error naming the scene if a resulting coordinate is not finite.
 void apply(const SceneChange& change, Scene& scene);
 
 Scene transformed(Scene scene, double scale, const Vec3& translate);
 
-/// A suffix that any built-in scene takes, as in two-spheres@far; several apply from left to right.
+/// A suffix for any built-in scene, as in two-spheres@far. Several are applied left to right.
 struct SceneSuffix {
   std::string suffix;       // begins with @
   std::string description;  // one line
-  /// Returns the change for the scene without frames. All frames have the same change.
+  /// Computes the change from the scene without frames. The same change applies to all frames.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();
@@ -101,8 +101,8 @@ const std::vector<SceneSuffix>& scene_suffixes();
 /// All built-in scenes, generated ones first. The list is made once.
 const std::vector<BuiltinScene>& builtin_scenes();
 
-// The parts of builtin_scenes(). The paper_scenes() move. Without frames they are halfway through
-// their motion; only the cloth is not.
+// The parts of builtin_scenes(). All paper_scenes() move. If the user names no frames, they are
+// halfway through their motion, except the cloth.
 std::vector<BuiltinScene> generated_scenes();
 std::vector<BuiltinScene> bench_scenes();
 std::vector<BuiltinScene> contact_scenes();
@@ -119,18 +119,18 @@ bool is_builtin_scene(const std::string& name);
 std::string likely_name(const std::string& name);
 
 /// The parts of a name: NAME[:SIZE[:SECOND]][@SUFFIX...], as in crowd:3000:0.2@far. The suffix
-/// @seedN draws a scene with the seed N in place of its own.
+/// @seedN replaces the scene's own seed by N.
 struct SceneRequest {
   const BuiltinScene* entry = nullptr;
   SceneParameters parameters;
   std::vector<const SceneSuffix*> suffixes;
 };
 /// Throws Error naming `name` if the scene or a suffix is unknown, or if a number is malformed, out
-/// of range, or not taken by the scene.
+/// of range, or not a parameter of the scene.
 SceneRequest parse_scene_name(const std::string& name);
 
-/// Returns a built-in scene. Throws Error as parse_scene_name() does, if packaged meshes are
-/// missing that the scene needs, and if suffixes move a vertex beyond the largest double.
+/// Returns a built-in scene. Throws Error as parse_scene_name() does. Throws Error if packaged
+/// meshes of the scene are missing, or if suffixes move a vertex beyond the largest double.
 Scene make_builtin_scene(const std::string& name);
 
 /// Returns the seed of a built-in scene: N of @seedN, or the scene's own seed. Empty if nothing in
@@ -142,17 +142,17 @@ bool has_motion(const std::string& name);
 
 std::string moving_names();
 
-/// A built-in scene that moves, frame by frame. The frames of a path go through it once, from time
-/// 0 in frame 0 to time 1 in the last frame. A frame of a simulation is a time step.
+/// A built-in scene that moves, frame by frame. A motion along a path has time 0 in frame 0, and
+/// time 1 in the last frame. A frame of a simulation is a time step.
 class MovingScene {
  public:
-  /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself. Throws Error
-  /// as make_builtin_scene(), and if nothing moves.
+  /// frames: number of frames, >= 1. self: every object is also tested against itself. Throws Error
+  /// as make_builtin_scene() does, and if nothing moves.
   explicit MovingScene(const std::string& name, long frames, bool self = false);
   /// Makes frames of a scene that is not built in. Precondition: the scene has a motion.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
-  /// The scene at a frame of the range, validated. Returns the same Scene object each time. Its
+  /// Returns the scene at a frame, validated. Every call returns the same Scene object. Its
   /// triangles and vertices stay in the same memory if triangles and objects did not change since
   /// the previous call. The ground of a suffix does not move. Throws Error as Motion does.
   const Scene& at(long frame);
@@ -175,8 +175,8 @@ class MovingScene {
 inline constexpr const char* kBunny = "bunny00.off";
 inline constexpr const char* kDragon = "ChineseDragon-10kv.off";
 
-/// Returns the folder of the packaged meshes: the value of the environment variable FARCULL_MESHES;
-/// if that is empty, the folder that was given when farcull was built.
+/// Returns the folder of the packaged meshes: the value of the environment variable FARCULL_MESHES.
+/// If this value is empty, returns the folder that was given when farcull was built.
 std::string mesh_folder();
 
 /// Reads a file of mesh_folder(). Throws Error if that fails.
@@ -184,16 +184,16 @@ Mesh packaged(const char* file);
 
 /// Calls take() with the parts of the scene "field" one after the other, so that memory does not
 /// grow with the scene. A part is a scene with the given name and some consecutive objects; take()
-/// may change it. Together the parts are the scene, bit for bit.
+/// may change it. All parts together equal the scene, bit for bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
 /// The distance between neighbouring sheets in the stack of the scene "shells".
 inline constexpr double kShellGap = 0x1p-34;
 
-/// Make the scenes slivers, stack, mixed, gap and so on. extreme_scenes() and contact_scenes() say
-/// what the numbers mean. Every fourth sheet of the stack crosses its neighbours. The pairs of
-/// `gap` collide if the second number, rounded to a whole number of ulps, is 0 or less.
+/// These functions make the scenes slivers, stack, mixed, gap and so on. The tables in
+/// extreme_scenes() and contact_scenes() explain the numbers. Every fourth sheet of the stack
+/// crosses its neighbours. The pairs of `gap` collide if the rounded second number is 0 or less.
 BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_stack(const SceneParameters& parameters);
 /// Returns the power of two nearest to the wanted gap of the stack, so that no height is rounded.
@@ -210,9 +210,8 @@ Scene two_objects(const std::string& name, const char* first, const Mesh& one, c
 /// Returns the scene, moved to the middle of its motion.
 BuiltScene halfway(BuiltScene built);
 
-/// Makes a scene. Can be constructed from a function of nothing or of the seed, which returns a
-/// Scene; or from a function of the parameters, or of parameters and seed, which returns a
-/// BuiltScene.
+/// Wraps a function that makes a scene. The function takes nothing or the seed, and returns a
+/// Scene. Or it takes the parameters, or parameters and seed, and returns a BuiltScene.
 struct SceneMaker {
   template <class Make>
   SceneMaker(Make function) {
@@ -229,24 +228,24 @@ struct SceneMaker {
   }
   std::function<BuiltScene(const SceneParameters&, std::uint64_t)> make;
 };
-/// Returns a maker of the scene that `make` returns, with the motion that `motion` makes from it.
+/// Combines a function that makes a scene with a function that makes the scene's motion.
 SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&));
 
 inline constexpr bool kCostly = true, kChanges = true;
-/// Returns a row of the table of scenes, with the members of BuiltinScene. seed: used if the name
-/// gives no seed; 0 if nothing in the scene is random.
+/// Returns a row of the table of built-in scenes. The arguments are members of BuiltinScene. seed:
+/// used if the name gives no seed; 0 if nothing in the scene is random.
 BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
                    const char* description, std::uint32_t objects, std::uint32_t triangles,
                    const char* motion = "", const SceneSize& size = {},
                    const SceneSecond& second = {}, bool costly = false,
                    bool topology_changes = false);
 
-/// The second object approaches from the side, passes through the first, and leaves on the other
-/// side. rest: the scene without frames; its objects share no vertex.
+/// In this motion, the second object approaches from the side, passes through the first, and leaves
+/// on the other side. rest: the scene without frames; its objects share no vertex.
 Motion pass_through(const Scene& rest);
-/// All objects swell and shrink, out of phase, while waves run along them.
+/// In this motion, all objects swell and shrink, out of phase, and waves run along them.
 Motion pulse(const Scene& rest);
-/// Each object moves along a path of its own, by up to its diagonal, and returns.
+/// In this motion, each object moves away by up to the diagonal of its box, and returns.
 Motion drift(const Scene& rest);
 
 }  // namespace farcull

@@ -1,11 +1,11 @@
-// A square cloth that falls on a fixed sphere: springs along the edges, bending across them,
-// contact with friction. The cloth has no contact with itself: its folds pass through each other,
-// so triangles of one moving object intersect.
+// Simulates a square cloth that falls on a fixed sphere. The model has springs along the edges,
+// bending across the edges, and contact with friction. The cloth has no contact with itself: its
+// folds pass through each other, so triangles of one moving object intersect.
 //
-// The end of a step is the minimum of a strictly convex function. So a step has one solution at
-// every stiffness, and the total energy grows in a step by at most ClothReport::slack, up to
-// rounding. docs/cloth.md has the equations, the sources and the proof. The same settings give the
-// same bits on the same machine.
+// The positions after a step minimize a strictly convex function. So a step has one solution at
+// every stiffness. The total energy grows in a step by at most ClothReport::slack, up to rounding.
+// docs/cloth.md has the equations, the sources and the proof. The same settings give the same bits
+// on the same machine.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,12 +19,12 @@ namespace farcull {
 
 /// The numbers that describe a cloth and its simulation. All are finite and in SI units.
 struct ClothSettings {
-  std::uint64_t triangles = 20000;  // 8 to 200,000; the cloth has 2 m^2, for a whole number m
+  std::uint64_t triangles = 20000;  // wanted, 8 to 200,000; the cloth has 2 m^2, m an integer
   double stiffness = 1e4;           // stiffness of the spring along an edge, N/m; > 0
   double side = 1;                  // side of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
-  double buckling_load = 1;         // N/m; >= 0: edges of length l buckle at the thrust
-                                    // buckling_load * l, N
+  double buckling_load = 1;         // N/m; >= 0: an edge of length l buckles under the
+                                    // compressive force buckling_load * l, in N
   double bending_rigidity = 2e-5;   // N m; >= 0
   double gravity = 9.81;            // acceleration along -z, m/s^2; >= 0
   double drag = 0.1;                // force of the air per area and speed, N s/m^3; >= 0
@@ -32,7 +32,7 @@ struct ClothSettings {
                          // and the object "sphere" has no triangles
   double contact_modulus = 1e6;  // pressure per depth below the sphere's surface, N/m^3; > 0
   double friction = 0.3;         // Coulomb's coefficient between cloth and sphere; >= 0
-  double stick_speed = 0.01;     // below this speed friction falls to 0, m/s; > 0
+  double stick_speed = 0.01;     // friction falls to 0 below this speed, m/s; > 0
   double height = 0.02;          // height of the cloth above the sphere at the start, m; >= 0
   double time_step = 0.01;       // s; > 0
   double tolerance = 1e-3;       // largest residual, as a fraction of the weight of the heaviest
@@ -104,13 +104,13 @@ struct Step {
 /// Preconditions: x0 and v0 have 3 numbers for each vertex; the model outlives the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
 
-/// Writes the gradient of F at x, N, to `result`, and resizes it.
+/// Writes the gradient of F at x, in N, to `result`. Resizes `result`.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
-/// Returns the force (N) of a spring of stiffness c that is stretched by e: the f > 0 with
-/// f (f/c - e) = crimp. f is nearly c e if e is far above 0, and nearly 0 if e is far below 0.
+/// Returns the force f, in N, of a spring of stiffness c stretched by e: the positive solution of f
+/// (f/c - e) = crimp. f is nearly c e if e is far above 0, and nearly 0 if e is far below 0.
 double smooth_force(double c, double crimp, double e);
-/// Return the derivative of smooth_force() by e; the integral of smooth_force() over e.
+/// Return the derivative and the integral of smooth_force() with respect to e.
 double smooth_stiffness(double c, double crimp, double e);
 double smooth_energy(double c, double crimp, double e);
 
@@ -119,23 +119,23 @@ double slack_length(const Model& model, std::size_t spring);
 /// Returns the stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
-/// Writes gradient() without the smooth forces of springs and contact.
+/// Writes the gradient of F without the smooth forces of springs and contact to `result`.
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
-/// Calls add() with the blocks that do not depend on x: inertia, air and bending. A pair of
-/// vertices may come several times, in any order. The block of a vertex with itself comes in full.
+/// Calls add() with the blocks that do not depend on x: inertia, air and bending. May pass the same
+/// pair of vertices several times, in any order. Passes the block of a vertex with itself in full.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// Returns the second derivatives of a spring's energy by the position of one end, the same for
-/// each end. The mixed derivatives are the negative of this block. Positive semidefinite.
+/// Returns the second derivatives of a spring's energy with respect to the position of one end.
+/// Both ends have the same block. The mixed derivatives are its negative. Positive semidefinite.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
-/// Return what contact and friction add to the block of a vertex. Positive semidefinite.
+/// Return the contributions of contact and friction to a vertex's block; positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 
-/// A point of the cone t >= |d|. The dual cone is the same cone.
+/// A point of the cone t >= |d|. The cone is self-dual.
 struct ConePoint {
   double t = 0;
   Vec3 d = Vec3::Zero();
@@ -151,17 +151,17 @@ struct Minimum {
   double residual = 0;       // largest force on a vertex, N; infinite if a force is not finite
   int iterations = 0;        // factorizations
   bool converged = false;    // residual <= Solver::tolerance(x)
-  std::string reason = {};   // why it did not converge
+  std::string reason = {};   // why the minimization did not converge
 };
 
-/// Keeps the pattern of the model's matrix between steps, and whether the last step needed interior
-/// points. The model must outlive the Solver.
+/// Minimizes the functions of steps. Keeps the sparsity pattern of the model's matrix between
+/// steps, and whether the last step needed interior points. The model must outlive the Solver.
 class Solver {
  public:
   explicit Solver(const Model& model);
 
-  /// Minimizes from x0 by Newton's method with a search along each direction. If this method gets
-  /// stuck, minimizes by interior points, and then by Newton's method from the result.
+  /// Minimizes from x0 by Newton's method with a line search. If this method gets stuck, minimizes
+  /// by interior points, and then by Newton's method from the result.
   Minimum minimize(const Step& step);
 
   /// Returns the largest residual at which a step has converged, N: the setting `tolerance`, plus
@@ -172,7 +172,7 @@ class Solver {
   const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
 
  private:
-  using Slot = std::array<int, 3>;  // for each column of a block, the place of its first value
+  using Slot = std::array<int, 3>;  // for each column of a block, the index of its first value
   Slot slot(std::uint32_t a, std::uint32_t b) const;
   void assemble(const std::function<Block(std::size_t)>& of_spring,
                 const std::function<Block(std::uint32_t)>& of_vertex);
@@ -183,8 +183,8 @@ class Solver {
   const Model& model_;
   Eigen::SparseMatrix<double> matrix_;
   std::vector<double> constant_;    // the values of matrix_ without the blocks that depend on x
-  std::vector<Slot> vertex_slots_;  // for each vertex, the places of its block with itself
-  std::vector<Slot> spring_slots_;  // for each spring, the places of the block of its ends
+  std::vector<Slot> vertex_slots_;  // for each vertex, the slot of its block with itself
+  std::vector<Slot> spring_slots_;  // for each spring, the slot of the block of its two ends
   bool was_stiff_ = false;          // the last step needed interior points
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;  // the Cholesky factor of matrix_
 };
@@ -193,13 +193,13 @@ class Solver {
 
 /// The outcome of a step, and the energies after it.
 struct ClothReport : cloth::Energies {
-  long frame = 0;            // number of steps so far, with this step; 0: before the first
+  long frame = 0;            // number of steps so far, including this step; 0: before step 1
   double residual = 0;       // largest force on a vertex that the step left unbalanced, N
   double slack = 0;          // work of the unbalanced forces in the step, J: the total energy
                              // grew by at most this work
   int iterations = 0;        // factorizations
   bool converged = true;     // residual <= Solver::tolerance()
-  std::string warning = {};  // why the step did not converge, and what was kept; else empty
+  std::string warning = {};  // why the step failed, and what was kept; empty if it converged
 };
 
 /// The state between two steps, and the report of the last step.
@@ -216,9 +216,9 @@ class Cloth {
   Cloth(Cloth&&) noexcept;
   Cloth& operator=(Cloth&&) noexcept;
 
-  /// Returns a scene of two objects: "cloth" (self), then "sphere". The first (m + 1)^2 vertices
-  /// are the cloth's, row by row. The scene always satisfies validate(). step() moves the vertices
-  /// of the same Scene object.
+  /// Returns a scene of two objects: "cloth", tested against itself, then "sphere". The first
+  /// vertices are the cloth's, row by row. The scene always satisfies validate(). step() moves the
+  /// vertices of the same Scene object.
   const Scene& scene() const;
 
   /// Makes one time step. If a step does not converge, every vertex stays where it was, at speed 0.
@@ -228,7 +228,7 @@ class Cloth {
   const ClothReport& report() const;
 
   ClothState state() const;
-  /// Takes the state, and recomputes the energies of its report. If velocities are not finite, the
+  /// Sets the state, and recomputes the energies of its report. If velocities are not finite, the
   /// next step does not converge. Throws std::logic_error unless positions and velocities have
   /// three numbers for each vertex.
   void restore(const ClothState& state);

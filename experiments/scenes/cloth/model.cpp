@@ -68,8 +68,8 @@ void add_triangles(Model& model) {
   }
 }
 
-// Places the cloth flat above the sphere, a little off its centre. Adds small random heights, far
-// below the size of a cell. They decide where the cloth folds; otherwise rounding would decide it.
+// Places the cloth flat above the sphere, a little off the sphere's centre. Adds small random
+// heights, far below the size of a cell. Otherwise rounding would decide where the cloth folds.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -88,12 +88,12 @@ void place(Model& model) {
 
 // Adds the hinge of edge a-b; c and d are the opposite corners of its two triangles. The weights
 // give the point where the line through c and d meets the edge. If the edge is a diagonal of a
-// cell, this is its middle. Otherwise the triangles mirror each other, and it is an end of the
-// edge.
+// cell, this point is the middle of the edge. Otherwise the triangles are mirror images, and the
+// point is an end of the edge.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // The cloth bends like a plate of this rigidity (docs/cloth.md, "Model").
+  // This stiffness gives the cloth the bending rigidity of a plate (docs/cloth.md, "Model").
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
@@ -123,7 +123,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Returns the energy of the convex spring minus the energy of the thrust, T l^2 / 2; 0 at rest.
+// Returns the energy of the convex spring minus buckling_load * l^2 / 2, shifted to 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;
@@ -258,7 +258,7 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
     const auto [a, b] = model.springs[i].vertices;
     const Vec3 d = at(x, b) - at(x, a);
     const double l = d.norm();
-    if (l == 0) continue;  // no direction, and a negligible force
+    if (l == 0) continue;  // the direction is undefined, and the force is negligible
     const Vec3 force = smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
     result.segment<3>(3 * b) += force;
     result.segment<3>(3 * a) -= force;

@@ -40,9 +40,9 @@ namespace {
 constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
 constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
 
-// The unknowns of the interior points. A spring has a point u of the cone and its dual z; its
-// complementarity is u.z, J. A contact has a distance s and a force f; its complementarity is s f,
-// J. At the minimum each complementarity is about Model::crimp.
+// The unknowns of the interior-point method. A spring has a point u of the cone and a dual point z;
+// its complementarity is u.z, in J. A contact has a distance s and a force f; its complementarity
+// is s f, in J. At the minimum each complementarity is about Model::crimp.
 class Interior {
  public:
   // Starts inside the cones at the positions x; each complementarity has the given value, J. The
@@ -74,13 +74,13 @@ class Interior {
 
  private:
   struct SpringState {
-    double length = 0;  // l*
+    double length = 0;  // l* of docs/cloth.md
     ConePoint u, z, du, dz;
-    double across = 0;  // scaling of t with t, plus stiffness
+    double across = 0;  // entry (t, t) of the scaling, plus stiffness
     double right = 0;   // right-hand side of the equation of t
-    Vec3 mixed;         // scaling of t with d
-    Block whole;        // scaling of d with d
-    Block block;        // added to the matrix; t is eliminated
+    Vec3 mixed;         // entries (t, d) of the scaling
+    Block whole;        // entries (d, d) of the scaling
+    Block block;        // added to the matrix after t is eliminated
     Vec3 force;         // added to the force
   };
   struct ContactState {
@@ -133,8 +133,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
   for (SpringState& spring : springs_) {
     const ConePoint& u = spring.u;
     const ConePoint& z = spring.z;
-    // The scaling W^-2 = eta (2 w w' - J), which takes u to z. Here w = J (u/|u| + J z/|z|)/(2 g),
-    // J = diag(1, -1, -1, -1), and |u| is the root of the determinant.
+    // The scaling W^-2 = eta (2 w w' - J) maps u to z. Here w = J (u/|u| + J z/|z|)/(2 g), J =
+    // diag(1, -1, -1, -1), and |u| is the square root of the determinant of u.
     const double size_u = std::sqrt(determinant(u));
     const double size_z = std::sqrt(determinant(z));
     const double cosine = (u.t * z.t + u.d.dot(z.d)) / (size_u * size_z);
@@ -146,8 +146,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.mixed = eta * 2 * wt * wd;
     spring.whole = eta * (2 * wd * wd.transpose() + Block::Identity());
     spring.across = step_.stretch + tt;
-    // The equations dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - length - z_t/c), with c
-    // = stretch, give du_t.
+    // du_t follows from two equations: dz = target u^-1 - z - W^-2 du, and du_t = dz_t/c - (t -
+    // length - z_t/c), with c = stretch.
     const double inverse = target / (size_u * size_u);
     spring.right =
         inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
@@ -207,13 +207,13 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
   return way;
 }
 
-constexpr int kTrials = 60;  // at most this many lengths are tried in one direction, by halving
+constexpr int kTrials = 60;  // most step lengths tried along one direction
 // The constants below change the time of a step, not its result.
-constexpr int kMostIterations = 40;  // with more iterations of Newton, interior points take over
-constexpr double kShort = 0.125;     // a step below this fraction of Newton's counts as short
-constexpr int kMostShort = 3;        // after this many short steps, interior points take over
+constexpr int kMostIterations = 40;  // Newton iterations before interior points take over
+constexpr double kShort = 0.125;     // a step below this fraction of Newton's step is short
+constexpr int kMostShort = 3;        // short steps before interior points take over
 constexpr double kStart = 1;         // initial complementarity / (weight * length)
-constexpr double kEnd = 2;           // final complementarity / crimp: Newton's method is then quick
+constexpr double kEnd = 2;           // final complementarity / crimp: Newton's method is then fast
 
 // Returns the lower triangle of the matrix, with the values that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model) {
@@ -317,9 +317,9 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
 }
 
 // Each iteration searches along Newton's direction until |slope| is at most a tenth of its initial
-// value. The function is convex, so the slope begins below 0 and rises. Stops after `iterations`
-// iterations or `most_short` short steps. Returns false if a force is not finite, if the matrix has
-// no Cholesky factor, or if max_iterations is used up.
+// value. The function is convex, so the slope is negative at first and rises. Stops after
+// `iterations` iterations or `most_short` short steps. Returns false if a force is not finite, if
+// the matrix has no Cholesky factor, or if max_iterations is used up.
 bool Solver::newton(const Step& step, int iterations, int most_short, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());

@@ -1,5 +1,5 @@
-// Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
-// meshes by their real paths.
+// Chooses a reader by the extension of the path, collects the faces that the reader finds, and
+// caches meshes by their real paths.
 #include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>
@@ -52,8 +52,7 @@ std::string extension_of(const std::string& path) {
   return lower_case(plain_name(path).extension().string());
 }
 
-// Larger files are refused, since a file is read at once. The counts in a file are compared with
-// its length.
+// Larger files are refused, since a file is read into memory as a whole.
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 struct Reader {
@@ -192,7 +191,7 @@ Mesh load_mesh(const std::string& path) {
 }
 
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name) {
-  // The header of a binary STL file may begin with any bytes, even with the mark of gzip.
+  // The header of a binary STL file may hold any bytes, even the magic number of gzip.
   const bool compressed = is_gzip(bytes) && !(format == MeshFormat::kStl && is_binary_stl(bytes));
   if (!compressed) return parse_known(bytes, format, name);
   return parse_known(gunzip(bytes, name, {.max_bytes = kMaxMeshBytes}), format, name);

@@ -1,7 +1,7 @@
 // Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip. OFF is written as well.
-// Coordinates are never rounded through float: text is rounded once, to double, and binary floats
-// widen exactly. Indices and sizes are checked against the contents of a file, and no memory is
-// allocated just because a header claims a size.
+// Coordinates are never rounded to float: text is rounded once, to double, and binary floats are
+// widened exactly. Indices and sizes are checked against the contents of a file. A size in a header
+// alone never causes an allocation.
 #pragma once
 
 #include <bit>
@@ -16,15 +16,15 @@
 
 namespace farcull {
 
-/// A triangle mesh with at least one triangle. Triangles may be degenerate, and vertices unused.
+/// A triangle mesh with at least one triangle. Triangles may be degenerate. Vertices may be unused.
 struct Mesh {
   std::vector<Vec3> vertices;                           // finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices
-  std::vector<std::uint32_t> source_face;               // the face of each triangle, from 0
+  std::vector<std::uint32_t> source_face;               // number of each triangle's face, from 0
   std::vector<std::uint32_t> group;        // for each triangle, an index into group_names
   std::vector<std::string> group_names;    // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded = {};  // faces that are Triangulation::folded, ascending
-  std::vector<std::string> notes = {};     // sentences on what the reader passed over
+  std::vector<std::string> notes = {};     // sentences about data that the reader skipped
 };
 
 /// Triangles with vertices of their own.
@@ -36,42 +36,42 @@ struct MeshPart {
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
 /// Returns the format that the extension of a path names, in upper or lower case. A final ".gz" is
-/// passed over. Throws Error naming the path, if possible foreign_mesh(path), for other extensions.
+/// ignored. For other extensions throws foreign_mesh(path), or else an Error naming the path.
 MeshFormat mesh_format(const std::string& path);
 /// Returns the format of "obj", "off", "ply" or "stl". Throws Error naming --format for other
 /// names.
 MeshFormat named_format(const std::string& name);
 bool has_mesh_extension(const std::string& path);
-/// Returns an Error if the path has the extension of a known format that is not read, compressed or
-/// not. The Error says what converts the file. Empty for other extensions.
+/// Returns an Error if the path's extension, with or without .gz, names a known format that is not
+/// read. The Error says how to convert the file. Returns empty for other extensions.
 std::optional<Error> foreign_mesh(const std::string& path);
 
-/// Sentences on what load_mesh() has passed over since the last call, as in "a.obj: 2 vertices that
-/// are not finite and that no face uses: passed over"; at most the first 100. Thread-safe.
+/// Returns at most 100 sentences on data that load_mesh() skipped since the previous call, as in
+/// "a.obj: 2 vertices that are not finite and that no face uses: passed over". Thread-safe.
 std::vector<std::string> take_reading_notes();
 void add_reading_notes(const std::string& path, const std::vector<std::string>& notes);
 
 /// Reads a mesh.
-/// - A polygon of n vertices becomes n - 2 triangles in place, by triangulate(). A planar simple
-///   polygon keeps its area exactly, convex or not. Mesh::folded lists the others.
-/// - Vertices that are not finite and that no face uses become 0, 0, 0. Mesh::notes says how many.
+/// - A polygon of n vertices becomes n - 2 consecutive triangles, by triangulate(). A simple planar
+///   polygon keeps its area exactly, convex or not. Mesh::folded lists folded polygons.
+/// - Vertices that are not finite and that no face uses become 0, 0, 0. Mesh::notes counts them.
 /// - OBJ: the last `o` or `g` names the group of the faces that follow. Equal `g` of different `o`
-///   are different groups. ASCII STL: each solid is a group, even if two have one name. Other
-///   formats: one group, "default".
-/// - STL: corners at one exact position become one vertex; 0.0 and -0.0 are one position.
+///   are different groups. ASCII STL: each solid is a group, even if two solids have the same name.
+///   Other formats: one group, "default".
+/// - STL: corners at exactly the same position become one vertex; 0.0 and -0.0 count as equal.
 /// - Contents compressed by gzip are decompressed, whatever the file's name.
-/// Throws Error naming the path, and the line if the format has lines, if the file is missing, is
-/// not a regular file, cannot be read, is malformed, or is shorter or longer than it claims; for a
-/// face with a corner that is not finite, an index out of range, or fewer than 3 vertices; for no
-/// triangle or more than 2^32 - 1; and for gzip data that gunzip() refuses (text.h).
+/// Throws Error naming the path, and the line if the format has lines, in these cases: the file is
+/// missing, not a regular file, unreadable, malformed, or shorter or longer than it claims; a face
+/// has a corner that is not finite, an index out of range, or fewer than 3 vertices; there are no
+/// triangles, or more than 2^32 - 1; gunzip() refuses the data (text.h).
 Mesh load_mesh(const std::string& path);
 
-/// load_mesh() for bytes in memory; `name` stands for the path in errors. Any bytes may be given.
+/// Does the same as load_mesh() for any bytes in memory. name: named in errors, like a path.
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
 /// Returns the part as OFF. Numbers have 17 significant digits, which identify a double.
 std::string off_text(const MeshPart& part);
-/// True if a name has exactly one place for a number: %d, or %0Nd for N digits (1 to 9) with
+/// True if a name has exactly one placeholder for a number: %d, or %0Nd for N digits (1 to 9) with
 /// leading zeros.
 bool is_numbered(const std::string& name);
 /// Returns the name with the number inserted. Preconditions: is_numbered(name), number >= 0.
@@ -93,17 +93,17 @@ class MeshCache {
   void set_frame(long frame) { frame_ = frame; }
 
   void read_as(MeshReading reading) { reading_ = std::move(reading); }
-  /// The end of the scene's name, such as ", welded at 1e-7*size"; empty if nothing is welded.
+  /// Returns a suffix for the scene's name, such as ", welded at 1e-7*size"; "" without welding.
   std::string note() const { return reading_.weld.empty() ? "" : ", welded at " + reading_.weld; }
-  /// Frees the meshes of names without numbers.
+  /// Frees all meshes except those of numbered names.
   void clear() { meshes_.clear(); }
 
-  /// Returns the mesh of the path, or of standard input for "-", welded if read_as() says so. The
+  /// Returns the mesh of the path, or of standard input for "-", welded as set by read_as(). The
   /// mesh is valid until get() is called for the same path in another frame. Throws Error as
-  /// load_mesh() does; without frames also for a numbered name that is not a file.
+  /// load_mesh() does. Without frames, throws Error for a numbered name that is not a file.
   const Mesh& get(const std::string& path);
 
-  /// The numbered names that get() was called with.
+  /// Returns the numbered names for which get() was called.
   std::vector<std::string> numbered_paths() const;
 
  private:
@@ -120,22 +120,22 @@ class MeshCache {
   std::map<std::string, Moving> moving_;  // keys: names
 };
 
-/// The name of a file without its folder, without .gz and without its extension.
+/// Returns the name of a file without its folder, without .gz and without its extension.
 std::string mesh_stem(const std::string& path);
 
 /// Collects vertices and polygons, checks them and triangulates the polygons. `line`: number of the
 /// line in the file; 0 for formats without lines.
 class MeshBuilder {
  public:
-  /// first: the number of the first vertex and face in messages about vertices.
+  /// first: the number of the first vertex and of the first face in messages.
   explicit MeshBuilder(std::string name, std::uint32_t first = 0);
 
   std::uint64_t vertex_count() const { return mesh_.vertices.size(); }
   /// p may be infinite or NaN if no face uses it. Throws Error beyond 2^32 - 1 vertices.
   void add_vertex(const Vec3& p, long line);
   /// Faces that are added from now on belong to the group of this name. An empty name means
-  /// "default". The same name with another `within`, such as an object of OBJ, is another group;
-  /// its name gets #2, #3 and so on.
+  /// "default". within: the enclosing unit, such as an object of OBJ. The same name in another unit
+  /// is another group, and gets the suffix #2, #3 and so on.
   void set_group(std::string_view group_name, std::string_view within = {});
   /// Adds a polygon. corners: indices of vertices from 0. Throws Error if there are fewer than 3
   /// corners, if a corner is not a vertex added before or is not finite, if the triangles exceed
@@ -180,21 +180,21 @@ enum class Triangulation {
   folded,     // the polygon is not simple in its plane: the triangles overlap or face both ways
 };
 
-/// Triangles of a polygon, as positions in `corners`: size - 2 of them, or none if it is too_large.
-/// Signs are exact, since a triangle outside the polygon would collide with objects that the
-/// polygon does not touch. The polygon is projected along the coordinate axis on which its normal
-/// has the largest component, or one at least half as large, and cut in the projection. Triangles
+/// Triangulates a polygon. Triangles are positions in `corners`; there are size - 2, or none if the
+/// polygon is too_large. Signs are exact, since a triangle outside the polygon would collide with
+/// objects that the polygon does not touch. The polygon is cut in its projection along a coordinate
+/// axis. The normal's component on this axis is the largest, or at least half as large. Triangles
 /// have the orientation of the polygon; some may be degenerate if corners are collinear. The result
 /// is `whole` for a simple planar polygon, for a nonplanar one with a simple projection, for
-/// collinear corners, and, if possible, for a polygon that touches itself along a seam. by: in
-/// place of turn(), for tests. Precondition: 3 corners or more, finite.
+/// collinear corners, and, if possible, for a polygon that touches itself along a seam. by:
+/// replaces turn() in tests. Precondition: at least 3 corners, all finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 
-// Vertices of a mesh that nearly coincide become one (--weld; weld.cpp). CAD programs write a
+// Welding (--weld; weld.cpp) merges vertices of a mesh that nearly coincide. CAD programs write a
 // corner once for each face, and the copies may differ in the last digits.
 
-/// The largest distance at which weld() makes two vertices one.
+/// The largest distance at which weld() merges two vertices.
 struct WeldTolerance {
   double value = 0;       // finite, >= 0
   bool relative = false;  // a fraction of the diagonal of the mesh's box
@@ -205,22 +205,22 @@ struct WeldTolerance {
 /// Reads "0.001", in the units of the mesh, or "1e-7*size". Throws Error naming the option.
 WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");
 
-/// Merges vertices that triangles use, in their order, and returns how many were merged. A vertex
-/// becomes the nearest vertex that was kept before, if the distance (in double) is at most the
-/// tolerance; of equally near vertices the first. Otherwise it is kept. Triangles stay in order,
-/// even if they become segments or points.
+/// Merges the vertices that triangles use, in ascending order, and returns how many were merged. A
+/// vertex becomes the nearest vertex kept before, if their distance (in double) is at most the
+/// tolerance; of several nearest vertices the first. Otherwise the vertex is kept. Triangles stay
+/// in order, even if they become segments or points.
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance);
 
 struct WeldHint {
   std::uint64_t open_edges = 0;  // edges that belong to an odd number of triangles
   double tolerance = 0;          // as a fraction of the diagonal of the object's box
-  Vec3 place;                    // the end of an open edge
+  Vec3 place;                    // one end of an open edge
 };
 /// Returns the least tolerance among 1e-13, 1e-12, .. 1e-5 at which merging the ends of the
-/// object's open edges would leave no open edge. Empty if no tolerance does, or if no edge is open.
+/// object's open edges leaves no open edge. Empty if there is none, or if no edge is open.
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object);
 
-/// For maps of positions. Equal positions must have equal bits: add 0.0, which turns -0.0 into 0.0.
+/// Hash of a position. Callers add 0.0 to coordinates, so that -0.0 becomes 0.0 and hashes alike.
 struct PositionHash {
   std::size_t operator()(const std::array<double, 3>& at) const {
     std::uint64_t hash = 0;

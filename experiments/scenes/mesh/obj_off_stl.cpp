@@ -1,7 +1,7 @@
-// Reads and writes Wavefront OBJ and OFF (as Geomview writes it); reads STL. Skips materials,
-// normals, colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces,
-// since skipping them would lose geometry. A binary STL file may begin with "solid", as text does,
-// so its length is checked before its contents.
+// Reads Wavefront OBJ, OFF and STL, and writes OFF as Geomview does. Skips materials, normals,
+// colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces, since
+// skipping them would lose geometry. A binary STL file may begin with "solid", like an ASCII one,
+// so the length of a file is checked before its contents.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, cons
   return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
 }
 
-// Throws Error if the bytes look like another format. Precondition: the bytes are no valid OBJ.
+// Throws Error if the bytes look like another format. Precondition: the bytes are not valid OBJ.
 void refuse_other_format(std::string_view bytes, const std::string& name) {
   const std::string start = lower_case(bytes.substr(0, 5));
   const bool stl = is_binary_stl(bytes) || start == "solid";
@@ -66,8 +66,8 @@ void refuse_other_format(std::string_view bytes, const std::string& name) {
                 "rename it by its format, or get it again");
 }
 
-// Refuses a lone CR if lines end with LF. The CR would count as a blank. So text after the CR would
-// be lost if the CR follows a comment or a vertex.
+// Throws Error if lines end with LF and there is a CR without LF. Such a CR would count as a blank.
+// Text after it would then be read as part of a comment or a vertex line, and be lost.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -188,7 +188,7 @@ Header read_header(TextReader& in) {
   TextReader ahead = in;
   if (ahead.token() == "BINARY")
     in.fail("the variant 'OFF BINARY' is not read", "write it as text");
-  // The counts are on the same line or on the next one.
+  // The counts are on the line of the keyword or on the next line.
   ahead = in;
   if (ahead.token().empty() && !in.next_line()) in.fail("the counts are missing", kDamaged);
 
@@ -229,7 +229,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
     const std::int64_t size = in.integer("the number of vertices of a face");
     if (size < 0) in.fail(fmt::format("a face of {} vertices", size), "correct the face");
     corners.clear();
-    // The corners are not allocated at once, so that a wrong size fails at the end of the line.
+    // Corners are added one by one. So a size that is too large fails at the end of the line.
     for (std::int64_t k = 0; k < size; ++k) {
       const std::int64_t index = in.integer("a vertex index of the face");
       if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices) {
@@ -334,7 +334,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Reads the expected words, which may be on several lines. Throws Error if it finds other words.
+// Reads the expected words, which may be on several lines. Throws Error if other words follow.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -347,8 +347,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line. Stops before a word `stop` if `after` is among the next few words,
-// since a file may have only one line.
+// Reads the rest of the line. A file may have only one line, so stops before a word `stop` if
+// `after` is among the next few words.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

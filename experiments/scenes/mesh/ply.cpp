@@ -39,7 +39,7 @@ bool is_integer(Type type) { return type != Type::kFloat && type != Type::kDoubl
 struct Property {
   std::string name;
   Type type = Type::kFloat;
-  std::optional<Type> count;  // of a list: the type of its length
+  std::optional<Type> count;  // set for a list: the type of the list's length
 };
 
 struct Element {
@@ -125,8 +125,8 @@ Header read_header(TextReader& in) {
   }
 }
 
-// AsciiBody and BinaryBody read the values of a file's body, and have the same functions. ASCII has
-// one element per line.
+// AsciiBody and BinaryBody read the values of a file's body, and have the same functions. An ASCII
+// body has one element per line.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextReader& in) : in_(in) {}
@@ -199,7 +199,7 @@ class BinaryBody {
   std::string name_;
 };
 
-// Reads the length of a list. Throws Error if such a list does not fit into the bytes left.
+// Reads the length of a list. Throws Error if the remaining bytes are too few for the list.
 template <class Body>
 std::uint64_t list_length(Body& body, const Property& list) {
   const std::int64_t length = body.integer(*list.count, "the length of a list");
@@ -244,16 +244,16 @@ bool is_index_list(const Property& property) {
   return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-// Keeps the faces until the vertices are known, since the elements may come in any order.
+// Stores the faces until the vertices are known, since faces may come first in the file.
 struct Faces {
   std::vector<std::uint32_t> corners;  // corners of all faces, one face after the other
   std::vector<std::uint32_t> sizes;
   std::vector<long> lines;
 };
 
-/// Turns strips into triangles. Each vertex makes a triangle with the two before it. Every second
-/// triangle is reversed, so that all face the same way. The index -1 begins a new strip. Triangles
-/// that name a vertex twice are left out, since they only join parts of a strip.
+/// Converts triangle strips into triangles. Each vertex forms a triangle with the two vertices
+/// before it. Every second triangle is reversed, so that all have one orientation. The index -1
+/// begins a strip. Triangles that name a vertex twice only join parts of a strip, and are left out.
 class Strip {
  public:
   void add(std::int64_t index, long line, Faces& faces) {

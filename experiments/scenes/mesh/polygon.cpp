@@ -1,5 +1,5 @@
-// Ear clipping (Meisters: Polygons have ears, 1975). Each sign is computed in double. If a bound on
-// the error leaves the sign uncertain, it is computed again without rounding.
+// Triangulates polygons by ear clipping (Meisters: Polygons have ears, 1975). Computes each sign in
+// double. If an error bound leaves a sign uncertain, computes this sign again without rounding.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // Returns the number of the highest word that is not 0, and that word. By this key, plane_of()
-  // compares the absolute values of sums; lower words do not matter.
+  // Returns the index and the value of the highest nonzero word of the absolute value. plane_of()
+  // compares the absolute values of sums by these two numbers.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -83,7 +83,7 @@ class ExactSum {
     }
   }
 
-  std::array<Words, 2> sums_{};  // sum of the added products, sum of the subtracted ones
+  std::array<Words, 2> sums_{};  // sums of the positive terms and of the absolute negative terms
 };
 
 // A plane of two coordinates, u and v, in which the polygon is counterclockwise.
@@ -92,7 +92,7 @@ struct Plane {
   bool has_area = true;
 };
 
-// Twice the area of the polygon in a plane, by Newell's formula, without rounding.
+// Returns twice the area of the polygon in a plane, by Newell's formula, without rounding.
 ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   ExactSum area;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -103,17 +103,17 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// Returns the plane perpendicular to an axis. The polygon's normal has its largest component on
-// this axis, or one at least half as large. The normal is rounded. If its largest component m is
-// not certain, exact areas decide.
+// Returns the plane perpendicular to the axis on which the polygon's normal has its largest
+// component, or one at least half as large. The computed normal is rounded. If the rounded
+// component m of largest size is not above `bound`, exact areas decide.
 //
 // With n corners there are 2 n products of two differences. A product is rounded three times, and
 // then takes part in at most 2 n additions. So it errs by less than (4 n + 8) kUnit of its computed
 // value, and by kTiny / 2 more if it underflows.
 //
 // Let e be the error of m, and f the error of another component. `bound` is at least 2 e + f. So if
-// m exceeds `bound`, its sign is right: the true value on this axis is at least m - e. The true
-// value of the other component is at most m + f, which is less than 2 (m - e).
+// m exceeds `bound`, the sign of m is right, and the true value on this axis is at least m - e. The
+// true value of the other component is at most m + f, which is less than 2 (m - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
@@ -130,7 +130,7 @@ Plane plane_of(std::span<const Vec3> points) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   int sign = normal[axis] > 0 ? 1 : -1;
-  if (!(std::abs(normal[axis]) > bound)) {  // true if it is NaN
+  if (!(std::abs(normal[axis]) > bound)) {  // also true for NaN
     std::array<ExactSum, 3> exact;
     for (int k = 0; k < 3; ++k) exact[k] = exact_area(points, (k + 1) % 3, (k + 2) % 3);
     axis =
@@ -199,14 +199,14 @@ struct Ring {
     classify(next[i]);
   }
 
-  // True if a polygon without right turns goes round once. Its corners then rise in lexicographic
-  // order to one highest corner, and fall after it.
+  // True if a polygon without right turns winds around once. The corners of such a polygon rise in
+  // lexicographic order to one highest corner, and fall after that corner.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
     };
-    // `before` and `first` are the directions of the previous edge and the first edge: 1 rises, -1
-    // falls, 0 means no edge yet. Edges without a length are skipped.
+    // `before` and `first` are the directions of the previous and the first edge: 1 if the edge
+    // rises, -1 if it falls, 0 if there was no edge yet. Edges of length 0 are skipped.
     int falls = 0, before = 0, first = 0;
     for (std::uint32_t i = 0; i < size(); ++i) {
       const Vec3& a = at[i];
@@ -221,7 +221,7 @@ struct Ring {
   }
 
   // True if the interiors of two triangles meet. They do not meet if the line through an edge of
-  // one triangle has the other triangle on its outer side. Precondition: both turn left.
+  // one triangle has the other triangle on its outer side. Precondition: both are counterclockwise.
   bool overlap(const Triangle& s, const Triangle& t) const {
     for (const auto& [x, y] : {std::pair(&s, &t), std::pair(&t, &s)}) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -234,7 +234,7 @@ struct Ring {
     return true;
   }
 
-  // True if no triangle turns right, and no two triangles overlap.
+  // True if no triangle is clockwise, and no two triangles overlap.
   bool whole(std::span<const Triangle> triangles) const {
     struct Extent {
       double lo, hi;
@@ -267,10 +267,9 @@ struct Ring {
 }  // namespace
 
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
-  // Each product has three roundings, so its relative error is at most 3 kUnit to first order. If
-  // it underflows, it errs by kTiny / 2 more. The factor 4 kUnit covers higher orders and the
-  // rounding of the bound. If anything overflows, the bound is infinite or NaN, and the comparison
-  // is false.
+  // Each product has three roundings, so its relative error is at most 3 kUnit to first order. An
+  // underflow adds an error of kTiny / 2. The factor 4 kUnit covers higher orders and the rounding
+  // of the bound. If anything overflows, the bound is infinite or NaN, and the comparison is false.
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double area = left - right;
@@ -323,8 +322,8 @@ Triangulation triangulate(std::span<const Vec3> corners, std::vector<Triangle>& 
     }
     i = ring.next[i];
   }
-  // Cuts the remaining polygon as a fan. It is a triangle, it is convex, or it has no ear since it
-  // is degenerate or crosses itself.
+  // Cuts the remaining polygon into a fan. This polygon is a triangle, is convex, or has no ear
+  // because it is degenerate or intersects itself.
   for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k])
     triangles.push_back({i, k, ring.next[k]});
   bool whole = false;

@@ -18,9 +18,9 @@ namespace {
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
 // Returns the rows of a rotation matrix, from a quaternion, or from axis and angle by Rodrigues'
-// formula. The diagonal of that formula is k^2 + c (1 - k^2). Here 1 - k^2 is written as the sum of
-// the other two squares. So a rotation about a coordinate axis has exactly c, s, 0 and 1 in its
-// matrix. Dividing by the largest part first keeps squares from overflow and underflow.
+// formula. Its diagonal has k^2 + c (1 - k^2), for each k of the unit axis. 1 - k^2 is computed as
+// the sum of the other squares, so a rotation about a coordinate axis has exactly c, s, 0 and 1 in
+// its matrix. Dividing by the largest component first avoids overflow and underflow.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   if (rotation.quaternion) {
     auto [x, y, z, w] = *rotation.quaternion;
@@ -377,7 +377,7 @@ Vec3 across(const Vec3& along, double length, Random& random) {
 Mesh refined(Mesh mesh, std::uint64_t wanted) {
   assert(!mesh.triangles.empty());
   if (mesh.triangles.size() >= wanted) return mesh;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> around;  // triangles of an edge
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> around;  // triangles at each edge
   std::vector<Edge> first;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -411,7 +411,8 @@ Mesh refined(Mesh mesh, std::uint64_t wanted) {
       triangles.push_back(t);
     };
     for (const std::uint32_t t : of) {
-      // Rotates the corners so that a, b is the edge; (a, b, c) becomes (a, m, c) and (m, b, c).
+      // Rotates the corners so that a, b is the edge. Replaces (a, b, c) by (a, m, c) and (m, b,
+      // c), with the midpoint m.
       std::array<std::uint32_t, 3> c = mesh.triangles[t];
       const auto on_edge = [&](std::uint32_t v) { return v == edge.a || v == edge.b; };
       while (!on_edge(c[0]) || !on_edge(c[1])) std::rotate(c.begin(), c.begin() + 1, c.end());

@@ -1,5 +1,5 @@
 // Puts meshes into a scene: places each mesh and splits it into objects. Scene files and built-in
-// scenes share this code, so that the same numbers give the same doubles. Also makes the shapes of
+// scenes share this code, so that equal placements give equal coordinates. Also makes the shapes of
 // generated scenes.
 #pragma once
 
@@ -53,8 +53,8 @@ class SceneBuilder {
   /// coordinate is not finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split = Split::kNone,
            const Placement& placement = {}, bool self = false);
-  /// Returns what was added since the previous call as a validated scene, and removes it here. The
-  /// names of its objects stay in use.
+  /// Returns the objects added since the previous call as a validated scene, and removes them from
+  /// the builder. Their names stay in use.
   Scene take_part();
   /// Returns the scene, validated. Nothing may be added afterwards.
   Scene finish() { return take_part(); }
@@ -81,7 +81,7 @@ class PartMaker {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::span<const Vec3> vertices_;
-  std::vector<std::uint32_t> number_;  // of each vertex: its number in the current part, or kNone
+  std::vector<std::uint32_t> number_;  // for each vertex, its number in the current part, or kNone
   std::vector<std::uint32_t> used_;
   MeshPart part_;
 };
@@ -92,7 +92,7 @@ void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
 
-/// Returns the box around all triangles of a Scene or a Mesh. It is empty if there is no triangle.
+/// Returns the box around all triangles of a Scene or a Mesh. The box is empty without triangles.
 template <class Triangles>
 Box bounds(const Triangles& of) {
   Box box = Box::empty();
@@ -108,10 +108,10 @@ double diagonal(const Box& box);
 
 /// Refines a mesh until it has `triangles` triangles or a few more. Each step divides the longest
 /// edge and all triangles at this edge (Rivara 1984). New vertices are midpoints, so only their
-/// rounding changes the surface, and a closed surface stays closed. Of edges of equal length, the
-/// edge with the lower vertex indices comes first, so every run gives the same mesh. A triangle
-/// that names a vertex twice is left unchanged. The parts of a triangle keep its source face and
-/// its group. Precondition: the mesh has a triangle.
+/// rounding changes the surface, and a closed surface stays closed. Among edges of equal length,
+/// the edge with the lower vertex indices is divided first, so every run gives the same mesh. A
+/// triangle that names a vertex twice is left unchanged. The parts of a triangle keep its source
+/// face and group. Precondition: the mesh has a triangle.
 Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
@@ -182,8 +182,8 @@ Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place
 /// Triangles that share no vertices.
 Mesh soup(const std::vector<Corners>& list);
 
-/// The unit sphere as an icosahedron whose triangles are each divided into 4^level triangles. The
-/// only function it uses is the square root, so the mesh is the same on every platform.
+/// The unit sphere as an icosahedron whose triangles are each divided into 4^level triangles.
+/// Coordinates need only arithmetic and square roots, so the mesh is the same on every platform.
 Mesh sphere(int level);
 
 /// A unit square of `cells` by `cells` cells, each of two triangles. Vertex i * (cells + 1) + j is

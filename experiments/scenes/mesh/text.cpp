@@ -48,7 +48,7 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// True if a decimal number outside the range of doubles is too small; false if it is too large.
+// For a decimal number beyond the range of doubles: true if it is too small, false if too large.
 // Doubles range from 5e-324 to 2e308, so the sign of the decimal exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
@@ -76,7 +76,7 @@ Error too_large(const std::string& path, std::uint64_t max_bytes) {
 
 void read_all(std::FILE* file, const std::string& path, std::uint64_t max_bytes,
               std::string& bytes) {
-  std::array<char, 4096> chunk;  // a stack may be as small as 64 KiB
+  std::array<char, 4096> chunk;  // small, since a stack may have only 64 KiB
   while (const std::size_t n = std::fread(chunk.data(), 1, chunk.size(), file)) {
     bytes.append(chunk.data(), n);
     if (bytes.size() > max_bytes) throw too_large(path, max_bytes);
@@ -129,7 +129,7 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
     throw Error(path, "the file does not exist", remedy);
   if (error) throw Error(path, "cannot be opened: " + error.message(), remedy);
   if (std::filesystem::is_directory(status)) throw Error(path, "is a directory", remedy);
-  // A pipe or a device may never end.
+  // Refuses pipes and devices, since they may never end.
   if (!std::filesystem::is_regular_file(status))
     throw Error(path, "is not a regular file", "copy its contents to a file and name that");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
@@ -138,7 +138,7 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   const std::uintmax_t claimed = std::filesystem::file_size(path, error);
   if (!error && claimed > max_bytes) throw too_large(path, max_bytes);
 
-  // The size is a hint: the file may change while it is read, and in /proc it is 0.
+  // The size is only a hint: a file may change while it is read, and files in /proc have size 0.
   std::string bytes;
   if (!error) bytes.reserve(claimed);
   read_all(file.get(), path, max_bytes, bytes);
@@ -234,7 +234,7 @@ void TextReader::skip_blanks() {
 }
 
 bool TextReader::next_line() {
-  // Reads the remaining tokens, since a line with a continuation includes the next lines.
+  // Skips the remaining tokens, since a line with a continuation includes the next lines.
   if (started_ && rules_.continuation) {
     while (!token().empty()) {
     }

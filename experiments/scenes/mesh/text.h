@@ -33,9 +33,9 @@ enum class Number { kOk, kMalformed, kNotFinite };
 /// and overflow. Sets `value` only if it returns kOk.
 Number parse_number(std::string_view token, double& value);
 
-/// A cursor over the lines and tokens of a text. The text and the name must outlive it. Blanks
-/// (space, tab, CR, VT, FF) separate tokens. Lines end with LF, or with CR in a text without LF.
-/// Lines without a token, and a byte order mark at the start, are passed over.
+/// A cursor over the lines and tokens of a text. The text and the name must outlive the reader.
+/// Blanks (space, tab, CR, VT, FF) separate tokens. Lines end with LF, or with CR in a text without
+/// LF. Lines without a token, and a byte order mark at the start, are skipped.
 class TextReader {
  public:
   struct Rules {
@@ -51,12 +51,12 @@ class TextReader {
   bool seek();
   /// Returns the next token of the current line, or an empty one at the end of the line.
   std::string_view token();
-  /// The tokens that are left on the line, joined by single spaces.
+  /// Returns the remaining tokens of the line, joined by single spaces.
   std::string rest();
-  /// The next token of the line as an integer. Throws Error that calls the number `what`.
+  /// Reads the next token of the line as an integer. what: name of the number in a thrown Error.
   std::int64_t integer(std::string_view what);
-  /// The next token of the line as a double; NaN if no finite double can hold the number. Throws
-  /// Error that calls the number `what`.
+  /// Reads the next token of the line as a double; NaN if no finite double can hold the number.
+  /// what: name of the number in a thrown Error.
   double coordinate(std::string_view what);
   /// Reads three coordinates with coordinate().
   Vec3 point();
@@ -66,7 +66,7 @@ class TextReader {
   /// Offset of the first byte that is not read yet.
   std::size_t offset() const { return at_; }
   std::size_t bytes_left() const { return text_.size() - at_; }
-  /// Throws Error with the current line.
+  /// Throws Error naming the current line.
   [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const;
 
  private:
@@ -95,9 +95,9 @@ struct GzipLimits {
 };
 
 /// Returns the contents of gzip data. The data may have several members in a row, as pigz writes
-/// them. Zeros after the last member are skipped. Throws Error naming `name` if the data are cut,
-/// damaged, followed by something else, or beyond the limits. Throws std::bad_alloc. Precondition:
-/// is_gzip(bytes).
+/// them. Zeros after the last member are skipped. Throws Error naming `name` if the data are
+/// truncated, damaged, followed by other bytes, or beyond the limits. Throws std::bad_alloc.
+/// Precondition: is_gzip(bytes).
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
 
 /// Returns the bytes as gzip data of one member, without a time or a name. With the same zlib, the

@@ -9,16 +9,16 @@
 namespace farcull {
 namespace {
 
-// Numbers points so that near points share a number. Keeps points in a grid, and looks for near
-// ones in the 27 cells around a point. The cells are twice as wide as the tolerance, so that
-// rounding moves no near point beyond these 27.
+// Gives points within the tolerance of each other the same number. Stores points in a grid, and
+// searches the 27 cells around a point. The cells are twice as wide as the tolerance, so that
+// rounding moves no near point out of these 27 cells.
 class NearPoints {
  public:
   // tolerance: finite, >= 0.
   explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
 
-  // Returns the number of the nearest kept point whose distance, in double, is at most the
-  // tolerance. If several are equally near, returns the lowest number. If there is none, keeps p
+  // Returns the number of the nearest stored point whose distance, in double, is at most the
+  // tolerance. If several are equally near, returns the lowest number. If there is none, stores p
   // with the number `own` and returns `own`.
   std::uint32_t number(const Vec3& p, std::uint32_t own);
 
@@ -60,8 +60,8 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // turns -0.0 into 0.0
-    // With a tolerance of 0 each position is a cell. From 2^53 on, neighbouring cells have the same
-    // number in double; but different positions are then at least a cell apart.
+    // With a tolerance of 0, each position is a cell. From 2^53 on, neighbouring cells may have the
+    // same number in double. But different positions are then at least a cell apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
@@ -122,7 +122,7 @@ std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance) {
 }
 
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
-  NearPoints exact(0);  // gives equal positions one number
+  NearPoints exact(0);  // gives equal positions the same number
   std::vector<Vec3> place;
   std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // keys: indices of vertices
   std::vector<Edge> edges;
@@ -149,7 +149,7 @@ std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object) {
   for (int power = -13; power <= -5; ++power) {
     const double tolerance = std::pow(10.0, power);
     NearPoints near(tolerance * size);
-    std::map<std::uint32_t, std::uint32_t> now;  // in the order in which weld() takes vertices
+    std::map<std::uint32_t, std::uint32_t> now;  // ascending, as weld() processes vertices
     for (const Edge& edge : open) now[edge[0]] = now[edge[1]] = 0;
     for (auto& [of, to] : now) to = near.number(place[of], of);
     std::vector<Edge> after;

@@ -1,6 +1,6 @@
 (** The checker: a program over integers that decides every pair of triangles whose boxes overlap.
-    Proofs.v proves that its answer is right and complete. What merely searches (trees, directions,
-    points) needs no proof: whatever it finds is verified by the few tests that are proved. *)
+    Proofs.v proves that its answer is right and complete. The searches (for trees, directions and
+    points) need no proof, since the few tests that are proved verify their results. *)
 From Coq Require Import ZArith NArith List Bool Orders Mergesort.
 Require Import Spec.
 Import ListNotations.
@@ -13,15 +13,15 @@ Definition lower_triangle (e : Z) (t : triangle double) : Z :=
   lower_vec (lower_vec (lower_vec e (p1 t)) (p2 t)) (p3 t).
 Definition lower_place (e : Z) (place : option double) : Z :=
   match place with Some d => lower e d | None => e end.
-(** The integer that is the double divided by 2^e; e is at most its exponent. *)
+(** The double d divided by 2^e. This is an integer, since e is at most the exponent of d. *)
 Definition scaled (e : Z) (d : double) : Z :=
   mantissa d * Z.of_N (N.shiftl 1 (Z.to_N (exponent d - e))).
 
 (** * The triangles that a tile needs
 
-    They begin before its end, and have a corner that is not before its beginning, or less than
-    [reach] before it. The reader calls [keep] for each triangle of a scene, so that it holds no
-    others; [gathered] says what it has in the end. *)
+    A tile needs each triangle with a corner before the tile's end and a corner that is at most
+    [reach] before the tile's beginning, or after it. main.ml calls [keep] for each triangle of a
+    scene, and so stores only these triangles. [gathered] is the final list. *)
 Record named := Named { of_object : Z; number : Z; inner : bool; corners : triangle double }.
 Definition is_below (d place : double) : bool :=
   let e := Z.min (exponent d) (exponent place) in scaled e d <? scaled e place.
@@ -110,7 +110,7 @@ Definition gap_along (a b : triangle Z) (d : vec Z) : Z :=
   let a1 := dot d (p1 a) in let a2 := dot d (p2 a) in let a3 := dot d (p3 a) in
   let b1 := dot d (p1 b) in let b2 := dot d (p2 b) in let b3 := dot d (p3 b) in
   Z.max (min3 b1 b2 b3 - max3 a1 a2 a3) (min3 a1 a2 a3 - max3 b1 b2 b3).
-(** The gap along d is longer than the clearance. *)
+(** True if the gap along d, divided by the length of d, is longer than the clearance. *)
 Definition separates (clearance : Z) (a b : triangle Z) (d : vec Z) : bool :=
   let gap := gap_along a b d in
   (0 <? gap) && (clearance * clearance * dot d d <? gap * gap).
@@ -119,8 +119,8 @@ Definition separated (clearance : Z) (a b : triangle Z) : bool :=
 
 (** * A common point
 
-    Three weights stand for a point of a triangle: the sum of its corners, each times its weight. It
-    is the point times the sum of the weights. *)
+    Three weights, one per corner, give a point of a triangle. [weigh] is the sum of the weighted
+    corners, [total] is the sum of the weights, and the point is [weigh] / [total]. *)
 Definition total (w : vec Z) : Z := x w + y w + z w.
 Definition weigh (w : vec Z) (t : triangle Z) : vec Z :=
   add (add (scale (x w) (p1 t)) (scale (y w) (p2 t))) (scale (z w) (p3 t)).
@@ -130,7 +130,7 @@ Definition is_common (a b : triangle Z) (u v : vec Z) : bool :=
   are_weights u && are_weights v &&
   equal (scale (total v) (weigh u a)) (scale (total u) (weigh v b)).
 
-(** The point p / m does not lie on the segment from c to d. *)
+(** True if the point p / m is not on the segment from c to d. *)
 Definition off_segment (c d p : vec Z) (m : Z) : bool :=
   let e := sub d c in let r := sub p (scale m c) in
   negb (equal (cross e r) origin) || (dot e r <? 0) || (m * dot e e <? dot e r) ||
@@ -138,10 +138,10 @@ Definition off_segment (c d p : vec Z) (m : Z) : bool :=
 Definition off_shared (shared : list (vec Z)) (p : vec Z) (m : Z) : bool :=
   forallb (fun c => forallb (fun d => off_segment c d p m) shared) shared.
 
-(** Weight p for corner i, and weight q for the next corner. *)
+(** Weight p for corner i, weight q for the next corner, weight 0 for the third corner. *)
 Definition on_edge (i : index) (p q : Z) : vec Z :=
   match i with I1 => Vec p q 0 | I2 => Vec 0 p q | I3 => Vec q 0 p end.
-(** The point of edge i that is n / d of the way along it. *)
+(** Weights of the point at the fraction n / d of edge i. *)
 Definition along (i : index) (n d : Z) : vec Z :=
   if d <? 0 then on_edge i (n - d) (- n) else on_edge i (d - n) n.
 
@@ -159,7 +159,7 @@ Definition probe_weights (a b : triangle Z) (p : probe) : vec Z :=
       let v := edge b j in let n := cross (edge a i) v in
       along i (dot (cross (between a b i j) v) n) (dot n n)
   end.
-(** Weights that may make the point p / m of the corners of t. *)
+(** Candidates for the weights of the point p / m in the triangle t. The caller verifies them. *)
 Definition locate (t : triangle Z) (p : vec Z) (m : Z) : list (vec Z) :=
   let n := normal t in
   let opposite i :=
@@ -175,24 +175,24 @@ Definition shows (good : vec Z -> Z -> bool) (a b : triangle Z) (p : probe) : bo
   are_weights u &&
   let q := weigh u a in
   existsb (fun v => is_common a b u v && good q (total u)) (locate b q (total u)).
-(** True if a good common point is found; [good p m] judges the point p / m. *)
+(** True if a common point p / m is found for which [good p m] is true. *)
 Definition has_common (good : vec Z -> Z -> bool) (a b : triangle Z) : bool :=
   existsb (shows good a b) probes || existsb (shows good b a) probes.
 
-(** * Two points the square of whose distance is at most n / m *)
+(** * Two points whose squared distance is at most n / m *)
 Definition are_within (n m : Z) (a b : triangle Z) (u v : vec Z) : bool :=
   let k := total u in let l := total v in
   let w := sub (scale l (weigh u a)) (scale k (weigh v b)) in let r := k * l in
   are_weights u && are_weights v && (m * dot w w <=? n * (r * r)).
-(** Weights that may make the point of a that is nearest to corner j of b: a corner of a, a point of
-    an edge, or a point of the inside. *)
+(** Candidates for the weights of the point of a that is nearest to corner j of b: the corners of a,
+    a point of each edge, and points of the face. *)
 Definition feet (a b : triangle Z) (j : index) : list (vec Z) :=
   let p := corner b j in
   let on_side i := let e := edge a i in along i (dot (sub p (corner a i)) e) (dot e e) in
   let n := normal a in let l := dot n n in
   map (fun i => on_edge i 1 0) indices ++ map on_side indices ++
   locate a (sub (scale l p) (scale (dot n (sub p (p1 a))) n)) l.
-(** [good a b u v] judges the points of weights u and v. *)
+(** [good a b u v] tests the point of a with weights u and the point of b with weights v. *)
 Definition near_corner (good : triangle Z -> triangle Z -> vec Z -> vec Z -> bool)
   (a b : triangle Z) : bool :=
   existsb (fun j => existsb (fun u => good a b u (on_edge j 1 0)) (feet a b j)) indices.
@@ -211,7 +211,7 @@ Definition is_corner_of (t : triangle Z) (c : vec Z) : bool :=
 Definition shared_corners (a b : triangle Z) : list (vec Z) :=
   filter (is_corner_of b) [p1 a; p2 a; p3 a].
 
-(** q lies on the segment from c to d. *)
+(** True if q is on the segment from c to d. *)
 Definition lies_on (c d q : vec Z) : bool :=
   let e := sub d c in let r := sub q c in let n := dot e r in let l := dot e e in
   if l =? 0 then equal r origin
@@ -219,9 +219,9 @@ Definition lies_on (c d q : vec Z) : bool :=
 Definition covered (shared : list (vec Z)) (t : triangle Z) (l : list index) : bool :=
   existsb (fun c => existsb (fun d => forallb (fun i => lies_on c d (corner t i)) l) shared) shared.
 
-(** All common points lie in the hull of the corners la of a, and in that of the corners lb of b. If a
-    plane has la on one side and lb on the other, all common points lie in the hulls of the corners
-    in the plane. *)
+(** Precondition: all common points lie in the hull of the corners la of a, and in the hull of the
+    corners lb of b. If a plane perpendicular to d has la below and lb above, all common points lie
+    in the plane. [cut] then returns the corners of la and of lb in the plane. *)
 Definition cut (a b : triangle Z) (la lb : list index) (d : vec Z)
   : option (list index * list index) :=
   match la with
@@ -238,7 +238,7 @@ Definition cut (a b : triangle Z) (la lb : list index) (d : vec Z)
 Definition opposed (l : list (vec Z)) : list (vec Z) := l ++ map (scale (-1)) l.
 Definition pairs_of {A B C} (f : A -> B -> C) (l : list A) (m : list B) : list C :=
   flat_map (fun p => map (f p) m) l.
-(** Directions to try, in groups. A group is computed only if all groups before it are of no use. *)
+(** Directions to try, in groups. A group is computed only if no earlier group gives a cut. *)
 Definition cuts (a b : triangle Z) : list (unit -> list (vec Z)) :=
   let ea := map (edge a) indices in let eb := map (edge b) indices in
   let ws := ea ++ eb ++ pairs_of (between a b) indices indices in
@@ -271,8 +271,8 @@ Fixpoint find_cut (a b : triangle Z) (la lb : list index) (groups : list (unit -
       | None => find_cut a b la lb rest
       end
   end.
-(** For two triangles that are flat: the common points lie on the line through c along e, and n
-    bounds them to the part between c and d. *)
+(** The tests of [pinned_by]. If it is true, all common points lie on the line through c along e,
+    and n bounds them to the part of the line between c and d. *)
 Definition on_line (c e : vec Z) (t : triangle Z) (l : list index) : bool :=
   forallb (fun i => forallb (fun k => dot (away k e) (corner t i) =? dot (away k e) c)
                             [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1]) l.
@@ -305,7 +305,7 @@ Fixpoint only_shared (steps : nat) (a b : triangle Z) (shared : list (vec Z)) (l
 
 (** * The decision of one pair *)
 Inductive kind := Separated | Only_shared | Meeting.
-(** None: it could not be proved whether the pair meets. [first]: a common point is tried first. *)
+(** None: no proof was found. [first]: looks for a common point before other proofs. *)
 Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : triangle Z)
   : option kind :=
   let apart := match shared with
@@ -321,7 +321,7 @@ Definition decide (first : bool) (clearance : Z) (shared : list (vec Z)) (a b : 
        | None => if common tt then Some Meeting else None
        end.
 
-(** * What a certificate says of a pair, and what is found *)
+(** * The claim of a certificate about a pair, and the finding of the checker *)
 Inductive claim := Direction (d : direction) | Meets | Neighbours | Nothing.
 Record evidence := Evidence { kept : bool; claimed : claim }.
 Inductive finding :=
@@ -350,7 +350,7 @@ Definition refutes (f : finding) : bool :=
 Definition is_as_claimed (f : finding) : bool := match f with As_claimed => true | _ => false end.
 
 (** * Triangles with their names and boxes *)
-(** [middle]: twice the middle of the box, for the tree alone. *)
+(** [middle]: twice the middle of the box; only the tree uses it. *)
 Record item := Item {
   obj : Z; num : Z; own : bool; shape : triangle Z; lo : vec Z; hi : vec Z; middle : vec Z }.
 Definition least (t : triangle Z) : vec Z :=
@@ -362,7 +362,7 @@ Definition greatest (t : triangle Z) : vec Z :=
 Definition make_item (e : Z) (n : named) : item :=
   let s := map_triangle (scaled e) (corners n) in let l := least s in let h := greatest s in
   Item (of_object n) (number n) (inner n) s l h (add l h).
-(** The items in the order of the list. It is reversed twice, since that needs no stack. *)
+(** The items in the order of the list. Two tail-recursive reversals need no stack. *)
 Definition items_of (e : Z) (l : list named) : list item :=
   fold_left (fun done n => make_item e n :: done) (rev_append l []) [].
 
@@ -373,14 +373,14 @@ Definition comes_before (a b : item) : bool :=
   (obj a <? obj b) || ((obj a =? obj b) && own a && (num a <? num b)).
 Definition candidate (a b : item) : bool :=
   comes_before a b && overlap (lo a) (hi a) (lo b) (hi b).
-(** The item with a box that reaches farther in all directions. *)
+(** The item with its box enlarged by [reach] on all sides. *)
 Definition grow (reach : Z) (a : item) : item :=
   if reach =? 0 then a else
   let r := Vec reach reach reach in
   Item (obj a) (num a) (own a) (shape a) (sub (lo a) r) (add (hi a) r) (middle a).
 
-(** * A tree of boxes: any division of the triangles is right, a good one is quick *)
-Record bounds := Bounds { low : vec Z; high : vec Z; last : Z }.  (* last: no object comes later *)
+(** * A tree of boxes. How it divides the triangles changes the speed, not the answer. *)
+Record bounds := Bounds { low : vec Z; high : vec Z; last : Z }.  (* last: the largest [obj] *)
 Inductive tree :=
 | Leaf (around : bounds) (held : list item)
 | Node (around : bounds) (one other : tree).
@@ -406,8 +406,8 @@ Fixpoint divide (f : item -> bool) (l yes no : list item) : list item * list ite
   | [] => (yes, no)
   | a :: rest => if f a then divide f rest (a :: yes) no else divide f rest yes (a :: no)
   end.
-(** Whether a box lies in the lower half of the boxes of a list, along the axis on which their
-    middles reach farthest. *)
+(** Tests whether the middle of a box is in the lower half of the range of all middles, along the
+    axis with the longest range. *)
 Definition halve (first : item) (l : list item) : item -> bool :=
   let bottom := fold_left (fun p b => down p (middle b)) l (middle first) in
   let top := fold_left (fun p b => up p (middle b)) l (middle first) in
@@ -453,7 +453,7 @@ Module Downwards <: TotalLeBool.
 End Downwards.
 Module Sorting := Sort Downwards.
 
-(** Whether a pair belongs to the tile. *)
+(** [is_of]: true if a pair belongs to the tile. *)
 Definition both_before (e : Z) (k : axis) (place : double) (a b : item) : bool :=
   let p := scaled e place in (coordinate k (lo a) <? p) && (coordinate k (lo b) <? p).
 Definition is_of (e : Z) (t : tile) (a b : item) : bool :=
@@ -547,9 +547,9 @@ Fixpoint judge_all (clearance : Z) (c : claims) (l : list (item * item))
       | Some (k, f) => judge_all clearance c l' es' (enter t e (name_of a b) k f)
       end
   end.
-(** [l]: the triangles that the tile needs. [reach]: a pair is decided if its boxes are at most that
-    far apart along each axis; with [less], if they are less far apart. Any reach that is at least
-    the clearance is right. *)
+(** [l]: the triangles that the tile needs. [reach]: a pair is decided if its boxes are at most
+    [reach] apart along each axis; with [less], if they are less than [reach] apart. The verdict is
+    right for any reach that is at least the clearance. *)
 Definition check (l : list named) (b : tile) (clearance reach : double) (less : bool) (c : claims)
   (es : list evidence) : verdict :=
   let e := lower_place (lower_place (lower (lower 0 clearance) reach) (tile_begin b)) (tile_end b) in
@@ -559,10 +559,10 @@ Definition check (l : list named) (b : tile) (clearance reach : double) (less : 
   then judge_all d c (pairs (is_of f b) (fun _ => r) (items_of f l)) es (Tally [] None None 0 0 0 0 0)
   else Bad_reach.
 
-(** * Tiles that make a whole
+(** * Tiles that together cover an axis
 
-    Each tile begins where the tile before it ends, and none ends before it begins: such tiles could
-    cover a place twice. *)
+    Each tile begins where the tile before it ends. No tile ends before its own beginning, since
+    then tiles could cover a place twice. *)
 Definition same_axis (k k' : axis) : bool :=
   match k, k' with
   | Along_x, Along_x | Along_y, Along_y | Along_z, Along_z => true
@@ -590,6 +590,6 @@ Fixpoint join (k : axis) (place : option double) (l : list (tile * list row)) (d
         end
       else None
   end.
-(** The rows of all tiles, in no order. None if the tiles leave a place out, or cover one twice. *)
+(** The rows of all tiles, unsorted. None if the tiles leave a place out, or cover a place twice. *)
 Definition merge_tiles (l : list (tile * list row)) : option (list row) :=
   match l with [] => None | (b, _) :: _ => join (tile_axis b) None l [] end.

@@ -1,11 +1,11 @@
-(** Neighbours that have no more in common than their shared part: planes that cut the corners which
-    can carry a common point. *)
+(** Neighbours that share only their shared part. Planes reduce the set of corners whose hull can
+    contain a common point. *)
 From Coq Require Import ZArith NArith QArith Lqa Lia List Bool Setoid Morphisms.
 Require Import Spec Checker Geometry Points.
 Import ListNotations.
 Open Scope Q_scope.
 
-(** p is a mean of the corners of t whose indices are in l. *)
+(** p is the mean, with weights w, of the corners of t whose indices are in l. *)
 Definition weighted (w : index -> Q) (f : index -> Q) : Q := w I1 * f I1 + w I2 * f I2 + w I3 * f I3.
 Definition mean_of (t : triangle Z) (l : list index) (w : index -> Q) (p : vec Q) : Prop :=
   (forall i, 0 <= w i) /\ (forall i, ~ In i l -> w i == 0) /\ weighted w (fun _ => 1) == 1 /\
@@ -108,7 +108,7 @@ Proof.
   intros E. injection E as <- <-. eapply first_cut_sound, C.
 Qed.
 
-(** If corners lie on one segment, every mean of them does. *)
+(** [covered_sound]: if corners lie on one segment, every mean of these corners lies on it. *)
 Lemma qdot_unit p : qdot unit_x p == x p /\ qdot unit_y p == y p /\ qdot unit_z p == z p.
 Proof.
   unfold qdot, unit_x, unit_y, unit_z. cbn [x y z]. change #1 with 1. change #0 with 0.
@@ -121,7 +121,7 @@ Proof.
   unfold covered. rewrite existsb_exists. intros (c & C & H). apply existsb_exists in H.
   destruct H as (d & D & H). rewrite forallb_forall in H.
   intros (W & WO & WS & WD). exists c, d. repeat split; auto.
-  (* Each corner with weight is at (1 - s) c + s d. *)
+  (* Each corner with a weight above 0 is (1 - s) c + s d for some s. *)
   assert (P : forall i, exists s, 0 <= s /\ s <= 1 /\
             (w i == 0 \/ same (qvec (corner t i)) (plus (times (1 - s) (qvec c)) (times s (qvec d))))).
   { intros i. destruct (index_dec i l) as [I | I].
@@ -137,7 +137,7 @@ Proof.
   assert (0 <= w I2 * (1 - s2)) by (apply Qmult_le_0_compat; lra).
   assert (0 <= w I3 * (1 - s3)) by (apply Qmult_le_0_compat; lra).
   split; [lra|]. split; [lra|].
-  (* One coordinate at a time; k is the coordinate as a linear function. *)
+  (* Each coordinate is a linear function k of the point. *)
   assert (K : forall k, qdot k p == (1 - (w I1 * s1 + w I2 * s2 + w I3 * s3)) * #(dot k c) +
                                     (w I1 * s1 + w I2 * s2 + w I3 * s3) * #(dot k d)).
   { intros k. rewrite WD. unfold weighted.
@@ -156,7 +156,7 @@ Proof.
   - now rewrite <- PZ, K, !dot_unit_z.
 Qed.
 
-(** Bounds for all corners that can have weight are bounds for the mean. *)
+(** A bound for all corners in l is a bound for their weighted mean. *)
 Lemma mean_at_most t l w p n h : mean_of t l w p ->
   (forall i, In i l -> (dot n (corner t i) <= h)%Z) -> qdot n p <= #h.
 Proof.

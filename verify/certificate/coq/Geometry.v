@@ -1,4 +1,4 @@
-(** What the tests of Checker.v show about the points of two triangles. *)
+(** Lemmas on what the tests of Checker.v imply about the points of two triangles. *)
 From Coq Require Import ZArith NArith QArith Lqa Lia List Bool Permutation Setoid Morphisms.
 Require Import Spec Checker.
 Import ListNotations.
@@ -19,7 +19,7 @@ Lemma inject_eq a b : a = b <-> #a == #b.
 Proof. symmetry. apply inject_Z_injective. Qed.
 Ltac inject := repeat rewrite ?inject_sub, ?inject_Z_plus, ?inject_Z_mult, ?inject_Z_opp in *.
 
-(** Splits what a test of the checker says into facts about integers. *)
+(** Turns the result of a test of the checker into facts about integers. *)
 Ltac tests :=
   repeat match goal with
   | H : (_ && _)%bool = true |- _ => apply andb_prop in H; destruct H
@@ -60,7 +60,7 @@ Proof.
     repeat split; try assumption; eapply same_trans; try apply P; auto using same_sym.
 Qed.
 
-(** A linear function of a point. *)
+(** The scalar product of d and a point p: a linear function of p. *)
 Definition qdot (d : vec Z) (p : vec Q) : Q := #(x d) * x p + #(y d) * y p + #(z d) * z p.
 Lemma qdot_qvec d p : qdot d (qvec p) == #(dot d p).
 Proof. unfold qdot, dot. inject. reflexivity. Qed.
@@ -71,7 +71,7 @@ Lemma qdot_mix d u v w t :
   u * #(dot d (p1 t)) + v * #(dot d (p2 t)) + w * #(dot d (p3 t)).
 Proof. rewrite <- !qdot_qvec. unfold qdot, mix, plus, times, qtri, map_triangle, qvec. simpl. ring. Qed.
 
-(** A linear function of a point of a triangle is a mean of its values at the corners. *)
+(** At a point of a triangle, a linear function is a mean of its values at the corners. *)
 Lemma inside_dot d t p :
   inside (qtri t) p -> exists u v w, 0 <= u /\ 0 <= v /\ 0 <= w /\ u + v + w == 1 /\
     qdot d p == u * #(dot d (p1 t)) + v * #(dot d (p2 t)) + w * #(dot d (p3 t)).
@@ -124,7 +124,7 @@ Proof.
   intros A B. exists p, p. split; [assumption|]. split; [assumption|].
   pose proof (square D). unfold squared_distance. lra.
 Qed.
-(** Cauchy and Schwarz: no difference of projections is longer than the distance. *)
+(** Cauchy-Schwarz: projections onto d differ by at most |d| times the distance of the points. *)
 Lemma cauchy d p q :
   (qdot d q - qdot d p) * (qdot d q - qdot d p) <= #(dot d d) * squared_distance p q.
 Proof.

@@ -1,4 +1,4 @@
-(** All pairs whose boxes overlap are among those that the checker decides. *)
+(** The checker decides all pairs whose boxes overlap. *)
 From Coq Require Import ZArith NArith QArith Lqa Lia List Bool Permutation.
 Require Import Spec Checker.
 Import ListNotations.
@@ -168,7 +168,7 @@ Proof.
   - reflexivity.
 Qed.
 
-(** * No pair is there twice *)
+(** * No pair occurs twice *)
 Lemma put_once mine a l : NoDup l -> forall done, NoDup done ->
   (forall b, In b l -> ~ In (a, b) done) -> NoDup (put mine a l done).
 Proof.

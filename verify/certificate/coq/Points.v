@@ -91,7 +91,7 @@ Proof.
   - now rewrite P3, C3, D3.
 Qed.
 
-(** If p = q / m lies on the segment, q - m c is m t times d - c. *)
+(** If q / m lies on the segment from c to d, then q - m c = s (d - c) with 0 <= s <= m. *)
 Lemma segment_offset c d q m :
   (0 < m)%Z -> on_segment (qvec c) (qvec d) (over q m) ->
   exists s, 0 <= s /\ s <= #m /\
@@ -111,7 +111,6 @@ Proof.
   - rewrite Q2. ring.
   - rewrite Q3. ring.
 Qed.
-
 
 Lemma square_nonneg e : (0 <= dot e e)%Z.
 Proof. unfold dot. nia. Qed.

@@ -145,7 +145,7 @@ Proof.
   intros E [(p & A & B & O) | [N S]]; [left; exists p | right]; tauto.
 Qed.
 
-(** * The answer in terms of what the checker enumerates *)
+(** * The answer, in terms of the pairs that the checker enumerates *)
 Section Scene.
 Variables (s : scene) (piece : tile) (clearance reach : double) (less : bool).
 Let l := gathered piece reach s.
@@ -184,7 +184,7 @@ Proof.
   apply gathered_all in N. destruct N as (o & ob & i & t & O & I & _ & ->).
   exists o, ob, i, t. split; [assumption|]. split; [exists ob; auto | auto].
 Qed.
-(** The checker knows which pairs belong to the tile. *)
+(** [is_of] is true exactly for the pairs that belong to the tile. *)
 Lemma is_of_belongs o i inner o' i' inner' t t' : at_most_triangle f t -> at_most_triangle f t' ->
   is_of f piece (make_item f (Named o i inner t)) (make_item f (Named o' i' inner' t')) = true <->
   belongs piece t t'.
@@ -210,7 +210,7 @@ Proof.
         as [Y | Y]; rewrite before_box in Y by assumption; tauto.
   - split; [intros _; split; discriminate | auto].
 Qed.
-(** The triangles of a pair that belongs to the tile, and counts, are among those that are kept. *)
+(** Both triangles of a pair that counts and belongs to the tile are needed, so they are kept. *)
 Lemma belongs_needed one t t' : belongs piece t t' ->
   count (value clearance) one (map_triangle value t) (map_triangle value t') ->
   is_needed piece reach t = true /\ is_needed piece reach t' = true.
@@ -285,7 +285,7 @@ Proof.
     + exists t, t'. auto.
 Qed.
 
-(** * The column of neighbours *)
+(** * The column [neighbours] *)
 Lemma name_flag a b : neighbours (name_of a b) = true <->
   obj a = obj b /\ exists c, is_shared (qtri (shape a)) (qtri (shape b)) c.
 Proof.
@@ -353,7 +353,7 @@ Proof.
 Qed.
 End Scene.
 
-(** * Tiles that make a whole *)
+(** * Tiles that together cover an axis *)
 Lemma NoDup_app_disjoint {A} (l m : list A) : NoDup l -> NoDup m ->
   (forall a, In a l -> ~ In a m) -> NoDup (l ++ m).
 Proof.
@@ -398,7 +398,7 @@ Proof.
     + intros [H | H]; [right; exists b, rows; simpl; auto | auto].
     + intros [H | (b' & rows' & [I | []] & H)]; [auto | injection I as -> ->; auto].
 Qed.
-(** Each pair that does not begin before the first place belongs to one of the tiles. *)
+(** Each pair belongs to one of the tiles, unless both triangles have a corner before [place]. *)
 Lemma join_covers k t t' rest : forall place done all, join k place rest done = Some all ->
   (forall p, place = Some p -> ~ (before k p t /\ before k p t')) ->
   exists b rows, In (b, rows) rest /\ belongs b t t'.
@@ -421,7 +421,7 @@ Proof. intros L (c & C & B). exists c. split; [exact C|]. eapply Qlt_le_trans; e
 Lemma names_unique r o i o' i' m n m' n' : names r o i o' i' -> names r m n m' n' ->
   o = m /\ i = n /\ o' = m' /\ i' = n'.
 Proof. unfold names. lia. Qed.
-(** No pair belongs to two of the tiles. *)
+(** No pair belongs to two of the tiles, so no row occurs twice. *)
 Lemma join_once s right k rest : forall place done all, join k place rest done = Some all ->
   (forall b rows, In (b, rows) rest ->
     lists (fun o i o' i' => right o i o' i' /\ in_tile b s o i o' i') s rows) ->
@@ -457,7 +457,7 @@ Lemma triangles_of_answer s clearance o i o' i' : answer s clearance o i o' i' -
 Proof. intros (_ & t & t' & T & T' & _). eauto. Qed.
 
 (** * The theorems *)
-(** A list of the pairs that belong to a tile. The triangles that the reader keeps suffice. *)
+(** An accepted list is right and complete for its tile. The triangles that are kept suffice. *)
 Theorem accepted_tile_is_right_and_complete s piece clearance reach less c es l :
   check (gathered piece reach s) piece clearance reach less c es = Proved l ->
   right_and_complete_in piece s clearance l.
@@ -475,7 +475,7 @@ Proof.
     apply L. right. exists a, b. auto.
 Qed.
 
-(** If the tiles leave nothing out, their lists together are the list of the whole scene. *)
+(** If the tiles cover an axis, their lists together are right and complete for the whole scene. *)
 Theorem merged_list_is_right_and_complete s clearance tiles l :
   merge_tiles tiles = Some l ->
   (forall piece rows, In (piece, rows) tiles -> right_and_complete_in piece s clearance rows) ->
@@ -493,7 +493,7 @@ Proof.
     exists r. split; [|assumption]. apply A. right. eauto.
 Qed.
 
-(** A scene in one piece. *)
+(** Without tiles, an accepted list is right and complete for the whole scene. *)
 Theorem accepted_list_is_right_and_complete s clearance reach less c es l :
   check (gathered everything reach s) everything clearance reach less c es = Proved l ->
   right_and_complete s clearance l.
@@ -506,7 +506,7 @@ Proof.
     repeat split; auto; discriminate.
 Qed.
 
-(** No pair has two rows in a list that is right and complete, whatever their last columns say. *)
+(** In a list that is right and complete, two rows that name the same pair are equal. *)
 Theorem pair_has_one_row s clearance l r r' o i o' i' : right_and_complete s clearance l ->
   In r l -> In r' l -> names r o i o' i' -> names r' o i o' i' -> r = r'.
 Proof.
@@ -518,7 +518,7 @@ Proof.
   unfold names in *. cbn in *. f_equal; try lia. destruct n, n'; intuition congruence.
 Qed.
 
-(** A refuted certificate says something false of the pair that is named. *)
+(** A refuted certificate makes a false claim about the pair that the verdict names. *)
 Theorem refuted_pair_is_claimed_wrongly s piece clearance reach less c es r f o i o' i' :
   check (gathered piece reach s) piece clearance reach less c es = Refuted r f -> names r o i o' i' ->
   f = Said_to_meet /\ ~ answer s clearance o i o' i' \/

@@ -1,4 +1,4 @@
-(** From doubles to integers: the scale does not matter. *)
+(** The scale that turns doubles into integers does not change the answer. *)
 From Coq Require Import ZArith NArith QArith Qpower Lqa Lia List Bool Setoid Morphisms.
 Require Import Spec Checker Geometry Points Pairs.
 Import ListNotations.

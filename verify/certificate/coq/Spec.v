@@ -1,5 +1,5 @@
-(** What the checker of certificates proves: the question alone, without a way to answer it.
-    docs/verified.md answers questions about the definitions. *)
+(** The definitions of the question that the checker of certificates answers. Nothing here computes
+    the answer. docs/verified.md explains the definitions. *)
 From Coq Require Import ZArith QArith List Bool.
 Import ListNotations.
 Open Scope Q_scope.
@@ -15,12 +15,12 @@ Definition map_vec {C D} (f : C -> D) (p : vec C) : vec D := Vec (f (x p)) (f (y
 Definition map_triangle {C D} (f : C -> D) (t : triangle C) : triangle D :=
   Triangle (map_vec f (p1 t)) (map_vec f (p2 t)) (map_vec f (p3 t)).
 Notation exact := (map_triangle value).
-(** Two names of one point: == is equality of rational numbers, so 1/2 == 2/4. *)
+(** Equality of points. == is equality of rational numbers, so 1/2 == 2/4. *)
 Definition same (p q : vec Q) : Prop := x p == x q /\ y p == y q /\ z p == z q.
 Definition plus (p q : vec Q) : vec Q := Vec (x p + x q) (y p + y q) (z p + z q).
 Definition times (k : Q) (p : vec Q) : vec Q := Vec (k * x p) (k * y p) (k * z p).
-(** The points of a closed triangle (the convex combinations of its corners, which may lie on one
-    line or be one point), of a closed segment, and of the segments between common corners. *)
+(** The points of a closed triangle: convex combinations of its corners, which may be collinear or
+    equal. Then the points of a closed segment, and of the segments between common corners. *)
 Definition mix (u v w : Q) (t : triangle Q) : vec Q :=
   plus (plus (times u (p1 t)) (times v (p2 t))) (times w (p3 t)).
 Definition inside (t : triangle Q) (p : vec Q) : Prop :=
@@ -32,9 +32,9 @@ Definition is_corner (t : triangle Q) (c : vec Q) : Prop :=
 Definition is_shared (a b : triangle Q) (c : vec Q) : Prop := is_corner a c /\ is_corner b c.
 Definition in_shared_part (a b : triangle Q) (p : vec Q) : Prop :=
   exists c d, is_shared a b c /\ is_shared a b d /\ on_segment c d p.
-(** Two triangles of two objects meet if they have a common point. Two triangles of one object meet
-    if they have a common point that is not in their shared part. With a clearance, triangles at this
-    distance or less count as well, except neighbours: they have to meet. *)
+(** Two triangles of different objects meet if they have a common point. Two triangles of one object
+    meet if they have a common point that is not in their shared part. With a clearance, triangles
+    at this distance or less count as well; neighbours count only if they meet. *)
 Definition meet (one_object : Prop) (a b : triangle Q) : Prop :=
   exists p, inside a p /\ inside b p /\ (one_object -> ~ in_shared_part a b p).
 Definition squared_distance (p q : vec Q) : Q :=
@@ -44,7 +44,7 @@ Definition near (clearance : Q) (a b : triangle Q) : Prop :=
 Definition count (clearance : Q) (one_object : Prop) (a b : triangle Q) : Prop :=
   meet one_object a b \/ (near clearance a b /\ ~ (one_object /\ exists c, is_shared a b c)).
 (** A scene is a list of objects, and an object a list of triangles. [self]: pairs of triangles of
-    this object are asked for as well. Objects and triangles are counted from 0. *)
+    this object are asked for, too. Indices of objects and triangles begin at 0. *)
 Record object := Object { self : bool; triangles : list (triangle double) }.
 Definition scene := list object.
 Definition is_triangle (s : scene) (o i : nat) (t : triangle double) : Prop :=
@@ -55,7 +55,7 @@ Definition answer (s : scene) (clearance : double) (o i o' i' : nat) : Prop :=
   asked s o i o' i' /\ exists t t', is_triangle s o i t /\ is_triangle s o' i' t' /\
                                     count (value clearance) (o = o') (exact t) (exact t').
 (** A row of a list of pairs. [neighbours]: the two triangles are of one object and have a common
-    corner. A list is right and complete if no row is there twice ([NoDup]), each row names a pair
+    corner. A list is right and complete if no row occurs twice ([NoDup]), each row names a pair
     that is right, and each pair that is right has a row. *)
 Record row := Row { object_a : Z; triangle_a : Z; object_b : Z; triangle_b : Z; neighbours : bool }.
 Definition names (r : row) (o i o' i' : nat) : Prop := object_a r = Z.of_nat o /\
@@ -67,9 +67,9 @@ Definition lists (right : nat -> nat -> nat -> nat -> Prop) (s : scene) (l : lis
                                   (neighbours r = true <-> are_neighbours s o i o' i')) /\
   (forall o i o' i', right o i o' i' -> exists r, In r l /\ names r o i o' i').
 Definition right_and_complete (s : scene) (clearance : double) := lists (answer s clearance) s.
-(** A tile is the part of space between two places on an axis; None: the tile has no end there. A
-    pair belongs to a tile if both triangles have a corner before its end, and if not both of them
-    have a corner before its beginning. *)
+(** A tile is the part of space between two places on an axis; None: the tile is unbounded on that
+    side. A pair belongs to a tile if both triangles have a corner before its end, and if not both
+    of them have a corner before its beginning. *)
 Inductive axis := Along_x | Along_y | Along_z.
 Definition coordinate {C} (k : axis) (p : vec C) : C :=
   match k with Along_x => x p | Along_y => y p | Along_z => z p end.

@@ -15,7 +15,7 @@ if [ $same = yes ] && [ -x farcull-check-verified ]; then exit 0; fi
 rm -f farcull-check-verified
 cp "$from"/*.v "$from"/*.ml "$from/build.sh" .
 
-# With these words Coq accepts a theorem without its proof, so no file may have them.
+# These words make Coq accept a theorem without a proof, so no file may contain them.
 if grep -nE '^ *(Axiom|Parameter|Hypothesis|Conjecture|Admitted)|admit\.|Unset Guard|bypass_check' ./*.v; then
   echo "build.sh: the proof assumes something" >&2
   exit 1
@@ -28,6 +28,6 @@ if [ "$(grep -cx 'Closed under the global context' Proofs.log)" != "$(grep -c '^
   exit 1
 fi
 coqc -q Extract.v
-# -w -a: no warnings, since Coq has written the code.
+# -w -a: no warnings, since Coq generates most of the code.
 ocamlfind ocamlopt -package zarith -linkpkg -inline 100 -w -a checker.mli checker.ml json.ml main.ml -o farcull-check-verified.new
 mv farcull-check-verified.new farcull-check-verified

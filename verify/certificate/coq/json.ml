@@ -1,4 +1,4 @@
-(* Reads a certificate as JSON: the whole form that docs/certificate.md describes, and no other. *)
+(* Reads a certificate from JSON. Accepts only the form that docs/certificate.md describes. *)
 exception Bad of string
 let bad format = Printf.ksprintf (fun text -> raise (Bad text)) format
 
@@ -186,7 +186,7 @@ let clearance root =
   if version root = 3 then 0.
   else match member "clearance" root with Number s -> float_of_string s | _ -> 0.
 
-(* Of version 5: the axis of the tile, and where it begins and ends. *)
+(* The tile of a certificate of version 5: its axis and its two ends. null: unbounded. *)
 let is_place = function
   | Null -> ()
   | Number s when Float.abs (float_of_string s) < infinity -> ()

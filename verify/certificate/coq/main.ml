@@ -1,14 +1,14 @@
-(* farcull-check-verified CERTIFICATE SCENE ...: reads both files, calls the checker that Checker.v
-   defines and Proofs.v proves, and prints its verdict; then the same for further pairs of files.
-   With --tiles CERTIFICATE... SCENE the certificates are those of all tiles of the scene, in order.
-   docs/certificate.md describes the certificate. SCENE holds the words that `farcull check
-   --verified` writes: 64 bits each, lowest byte first. Exit status: 0 proved; 1 refuted or not
+(* farcull-check-verified CERTIFICATE SCENE ...: reads both files, calls the checker (defined in
+   Checker.v, proved in Proofs.v), and prints the verdict. Further pairs of files are checked
+   likewise. With --tiles CERTIFICATE... SCENE, there is one certificate for each tile of the scene,
+   in order. docs/certificate.md describes certificates. SCENE is a file that `farcull check
+   --verified` writes: words of 64 bits, lowest byte first. Exit status: 0 proved; 1 refuted or not
    proved; 2 a file cannot be read; 3 the checker could not decide a pair; 4 the stack or the memory
-   was too small. This file is trusted: it turns bytes into the values of Spec.v, and a verdict into
-   a line. *)
+   was too small. This file is trusted, not proved: it turns bytes into the values of Spec.v, and a
+   verdict into text. *)
 module Integer = Z
 open Checker
-module Z = Integer  (* zarith's; the checker has a Z of its own *)
+module Z = Integer  (* Z is zarith's module, not the checker's Z *)
 
 exception Bad of string
 let bad format = Printf.ksprintf (fun text -> raise (Bad text)) format
@@ -26,7 +26,7 @@ let primes =
     if List.length found = 64 then List.rev found
     else from (n + 1) (if List.exists (fun p -> n mod p = 0) found then found else n :: found) in
   from 2 []
-(* The first 32 bits after the point of the square or cube root of n, by integers. *)
+(* The first 32 fractional bits of the square root (power 2) or cube root (power 3) of n. *)
 let fraction power n =
   let wanted = Z.shift_left (Z.of_int n) (32 * power) in
   Z.to_int (Z.logand (Z.root wanted power) (Z.of_int 0xffffffff))
@@ -34,7 +34,7 @@ let constants = Array.of_list (List.map (fraction 3) primes)
 let start = Array.sub (Array.of_list (List.map (fraction 2) primes)) 0 8
 
 let mask = 0xffffffff
-(* Adds the blocks of 64 bytes among the first bytes to the state. *)
+(* Adds the first [size] bytes to the state, except for an incomplete last block of 64 bytes. *)
 let sha_blocks state bytes size =
   let right x n = ((x lsr n) lor (x lsl (32 - n))) land mask in
   let w = Array.make 64 0 in
@@ -60,7 +60,7 @@ let sha_blocks state bytes size =
     done;
     Array.iteri (fun i x -> state.(i) <- (state.(i) + x) land mask) s
   done
-(* Adds the last bytes; [total] have been added in all. *)
+(* Adds the last bytes and the padding; returns the digest. [total]: bytes of the whole text. *)
 let sha_end state bytes size total =
   sha_blocks state bytes size;
   let rest = size mod 64 in
@@ -98,11 +98,12 @@ let double_of word =
     { mantissa = Z.of_int (if Int64.compare word 0L < 0 then - odd else odd);
       exponent = Z.of_int (max exponent 1 - 1075 + zeros) }
 
-(* The largest distance at which boxes count as near. farcull rounds the difference of two doubles,
-   and compares it with the clearance. The rounded difference is at most the clearance if the exact
-   difference is at most half way to the next double (below it, if the last bit of the clearance is
-   1, since half way is then rounded up). Any reach that is not below the clearance is right; this
-   one gives the pairs that the certificate has bytes for. *)
+(* The reach that [check] needs, and [less]. farcull compares the rounded difference of two doubles
+   with the clearance. Let the middle be half way between the clearance and the next double. The
+   rounded difference is at most the clearance iff the exact difference is at most the middle; it
+   has to be less if the last bit of the clearance is 1, since the middle is then rounded up. A
+   verdict is right for any reach of at least the clearance. This reach selects the pairs that the
+   certificate has bytes for. *)
 let reach_of clearance =
   if clearance = 0. then (zero, false)
   else
@@ -112,14 +113,14 @@ let reach_of clearance =
     ({ mantissa = Z.succ (Z.mul (Z.of_int 2) whole); exponent = Z.of_int (exponent - 1) },
      Z.is_odd whole)
 
-(* What is kept of a scene while it is read, and what is known of the whole scene. *)
+(* The triangles that are kept of a scene, and facts about the whole scene. *)
 type found = {
   kept : named list; objects : int; triangles : int; has_self : bool;
-  unasked_objects : Z.t; unasked_pairs : Z.t;  (* inside objects that are not self *)
+  unasked_objects : Z.t; unasked_pairs : Z.t;  (* objects that are not self; pairs inside them *)
   fnv : string; sha : string }
 
-(* Reads the scene from its beginning to its end. Calls [keep] for each triangle in order, and holds
-   the triangles that it keeps: this is [gathered] of Checker.v. *)
+(* Reads the scene from beginning to end, and calls [keep] for each triangle in order. The triangles
+   that [keep] adds to the list are those of [gathered] in Checker.v. *)
 let read_scene path piece reach =
   let file = open_in_bin path in
   Fun.protect ~finally:(fun () -> close_in file) @@ fun () ->
@@ -253,8 +254,8 @@ let other_scene root found =
   || not (Z.equal (number_of key "triangles") (Z.of_int found.triangles))
   || Json.text (Json.member "hash" key) <> found.fnv
 
-(* Checks one certificate. If it is proved, gives its tile, rows and clearance, and whether the scene
-   has objects that are self; else the verdict. *)
+(* Checks one certificate. If it is proved, returns its tile, rows and clearance, and whether an
+   object of the scene is self; otherwise returns the verdict. *)
 let check_file scene certificate =
   let text = read_file certificate in
   let root = Json.certificate text in
@@ -293,7 +294,7 @@ let check_file scene certificate =
         Ok (piece, rows, clearance, has_self)
       end
 
-(* The certificates of all tiles of a scene, in the order of the tiles. *)
+(* Checks the certificates of all tiles of a scene, in the order of the tiles. *)
 let check_tiles scene certificates =
   let results = List.map (check_file scene) certificates in
   let proved = List.filter_map Result.to_option results in
