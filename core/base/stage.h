@@ -75,12 +75,12 @@ enum class Reason : std::uint8_t {
   few_objects,       // n objects take part (n < m): few objects seldom hide each other
   rounds_given,      // n rounds were asked for
   all_views,         // a triangle is culled if every view clears it
-  little_culled,     // the round culled n of m triangles, too few for another round
+  little_culled,     // the last view culled n of m triangles, too few for another view
   owners,            // every triangle is an owner of its own
   clusters_given,    // sizes of clusters are given
   clusters_large,    // there are clusters: occlusion queries are used, on more than n triangles
   clusters_small,    // there are no clusters: only n triangles take part (n <= m)
-  clusters_flags,    // there are no clusters: without occlusion queries they save nothing
+  flags,             // no clusters, no object level: without occlusion queries they save nothing
   sweep,             // boxes of n objects with m triangles overlap; k and l: see Stage
   not_cleared,       // takes the pairs that boxes found, without the pairs that drawing cleared
   join_kept,         // compares boxes of the triangles that are kept
@@ -97,11 +97,12 @@ enum class Reason : std::uint8_t {
   near_boxes,        // n pairs of objects; m pairs of boxes were compared
   inside_not_asked,  // the option `inside` is no
   // Conditions that depend on pixels; only in a plan.
-  if_more_left,   // if more than n triangles are left (n = 0: any)
-  if_changed,     // if the previous round changed something
-  if_culled,      // if the previous round culled at least one triangle in n
-  if_candidates,  // if there are candidates
-  limited,        // in a trace: the option `limit` ended the search, so not all pairs are known
+  if_more_left,    // if more than n triangles are left (n = 0: any)
+  if_changed,      // if the previous round changed something
+  if_culled,       // if the last view culled at least one triangle in n
+  if_more_culled,  // if more than n triangles are left, and the last view culled one in m
+  if_candidates,   // if there are candidates
+  limited,         // in a trace: the option `limit` ended the search, so not all pairs are known
 };
 
 /// Values of Stage::level: none, objects, single triangles. Any other value is the number of

@@ -23,10 +23,13 @@ constexpr std::uint32_t kFewTriangles = 256;
 /// With fewer objects, no object is tested as a whole. Such a test draws all triangles twice, and
 /// among few overlapping objects, one seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
-/// A further round follows if the last round culled at least 1/kWorthARound of its triangles. A
-/// round takes about as long as exact tests of all its triangles, so it must cull a good part
-/// of them (docs/methods.md, "What a run leaves out").
-constexpr std::uint32_t kWorthARound = 8;
+/// A number of objects that no scene has: no object is tested as a whole. Without occlusion
+/// queries, asking for each triangle costs no more than asking for their object.
+constexpr std::uint32_t kNoObjectLevel = UINT32_MAX;
+/// A further view follows if the last view culled at least 1/kWorthAView of its triangles. A view
+/// takes about a third of the time of exact tests of all its triangles (docs/methods.md, "What a
+/// run leaves out").
+constexpr std::uint32_t kWorthAView = 3;
 
 struct RegionRules {
   bool self = false;  // objects with Object::self are tested against themselves
