@@ -75,12 +75,12 @@ enum class Reason : std::uint8_t {
   few_objects,          // only n objects take part (n < m): few objects seldom hide each other
   rounds_given,         // the option `rounds` is n
   all_views,            // a triangle is culled if every view clears it
-  little_culled,        // the round culled n of m triangles, too few for another round
+  little_culled,        // the last view culled n of m triangles, too few for another view
   owners,               // every triangle is its own owner
   clusters_given,       // the sizes of clusters are given
   clusters_large,       // clusters are used: occlusion queries on more than n triangles
   clusters_small,       // no clusters are used: only n triangles take part (n <= m)
-  clusters_flags,       // no clusters are used: they save nothing without occlusion queries
+  flags,                // no clusters, no object level: nothing gained without occlusion queries
   sweep,                // boxes of n objects with m triangles overlap; k, l: see Stage
   not_cleared,          // takes the pairs that boxes found and drawing did not clear
   join_kept,            // compares boxes of the kept triangles
@@ -96,12 +96,13 @@ enum class Reason : std::uint8_t {
   not_asked,            // the option `no_verify` is set
   near_boxes,           // n pairs of objects; m pairs of boxes were compared
   inside_not_asked,     // the option `inside` is no
-  // The next four depend on pixels and occur only in plans.
-  if_more_left,   // if more than n triangles are left (n = 0: any)
-  if_changed,     // if the previous round changed something
-  if_culled,      // if the previous round culled at least one triangle in n
-  if_candidates,  // if candidates are left
-  limited,        // in a trace: the option `limit` ended the search early
+  // The next five depend on pixels and occur only in plans.
+  if_more_left,    // if more than n triangles are left (n = 0: any)
+  if_changed,      // if the previous round changed something
+  if_culled,       // if the last view culled at least one triangle in n
+  if_more_culled,  // if more than n triangles are left, and the last view culled one in m
+  if_candidates,   // if candidates are left
+  limited,         // in a trace: the option `limit` ended the search early
 };
 
 /// Values of Stage::level: no level, objects, and single triangles. Any other value is the number

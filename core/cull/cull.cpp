@@ -104,10 +104,11 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
   // This stage is reported once per plan, and only if something is drawn.
   const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
   if (few > 0) {
+    const bool flags = settings.least_objects == kNoObjectLevel;
     stages.push_back({.kind = StageKind::objects,
-                      .reason = Reason::few_objects,
-                      .n = few,
-                      .m = settings.least_objects,
+                      .reason = flags ? Reason::flags : Reason::few_objects,
+                      .n = flags ? 0 : few,
+                      .m = flags ? 0 : settings.least_objects,
                       .in = live,
                       .out = live,
                       .unit = Unit::triangles});
@@ -173,7 +174,7 @@ class Culling {
   void begin_round() {
     ++round_;
     before_round_ = changes();
-    live_before_round_ = state_.live.size();
+    live_before_ = state_.live.size();
     if (settings_.clear == ClearRule::any) return;
     if (rule_.clears) state_.clear_bits();
     start_ = state_;
@@ -196,7 +197,7 @@ class Culling {
     state_.remove_culled();
     stage.out = state_.live.size();
     finish(stage);
-    end_at_few();
+    end_at_few_or_little();
   }
 
   // True if another round follows. A round that changed nothing is the last. If this round changed
@@ -213,19 +214,8 @@ class Culling {
     }
     if (ended || last) return false;
     if (settings_.full) return true;
-    const std::uint64_t culled = live_before_round_ - state_.live.size();
-    if (state_.live.empty()) {
-      leave_out({.kind = StageKind::further_rounds, .reason = Reason::nothing_left});
-    } else if (culled * settings_.worth_a_round < live_before_round_ &&
-               settings_.worth_a_round > 0) {
-      leave_out({.kind = StageKind::further_rounds,
-                 .round = round_,
-                 .reason = Reason::little_culled,
-                 .n = culled,
-                 .m = live_before_round_});
-    } else {
-      return true;
-    }
+    if (!state_.live.empty()) return true;
+    leave_out({.kind = StageKind::further_rounds, .reason = Reason::nothing_left});
     return false;
   }
 
@@ -254,6 +244,7 @@ class Culling {
   void begin_visit(std::size_t view) {
     if (progress_) progress_({StageKind::cull, view_, round_});
     place_ = &places_[view];
+    if (settings_.clear == ClearRule::any) live_before_ = state_.live.size();
     Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
     stage.fattener = settings_.fattener.name;
     stage.depends = round_ > 1 || (visited_ && !settings_.full);
@@ -311,7 +302,7 @@ class Culling {
       place_->plain += plain_cost(state_, items_, drawables_, kL, triangles_);
     }
     if (settings_.clear == ClearRule::any) {
-      end_at_few();
+      end_at_few_or_little();
       return;
     }
     // In plain CULLIDE, a view clears a triangle in both passes or not at all.
@@ -370,13 +361,17 @@ class Culling {
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
   }
 
-  void end_at_few() {
-    if (settings_.full || settings_.enough == 0 || state_.live.size() > settings_.enough) return;
+  void end_at_few_or_little() {
+    const std::uint64_t left = state_.live.size(), culled = live_before_ - left;
+    const bool few = settings_.enough > 0 && left <= settings_.enough;
+    const bool little =
+        settings_.worth_a_view > 0 && culled * settings_.worth_a_view < live_before_;
+    if (settings_.full || !(few || little)) return;
     done_ = true;
     leave_out({.kind = StageKind::further_views,
-               .reason = Reason::few_left,
-               .n = state_.live.size(),
-               .m = settings_.enough});
+               .reason = few ? Reason::few_left : Reason::little_culled,
+               .n = few ? left : culled,
+               .m = few ? settings_.enough : live_before_});
   }
 
   bool run_one(const Level& level, Bit bit, Stage& stage) {
@@ -451,10 +446,11 @@ class Culling {
   std::vector<ViewState> places_;
 
   int round_ = 0;
-  std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  CullState start_;                   // for ClearRule::all: the state when the round began
+  std::uint64_t before_round_ = 0;
+  std::uint64_t live_before_ = 0;  // live triangles before the visit; for ClearRule::all, the round
+  CullState start_;                // for ClearRule::all: the state when the round began
   std::vector<std::uint8_t> agreed_;  // for ClearRule::all: bits that every visit of the round set
-  bool done_ = false;                 // few enough triangles are left
+  bool done_ = false;                 // few triangles are left, or the last view culled little
   bool visited_ = false;              // a view was visited
   bool first_level_ = true;           // no level has run yet
   PassCost used_, saved_;
@@ -482,7 +478,6 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   if (!settings.objects_alone) levels.push_back(kTriangleLevel);
 
   bool first_view = true, first_level = true;
-  const Stage rule{.depends = true, .reason = Reason::if_more_left, .n = settings.enough};
   for (std::size_t v = 0; v < places.size(); ++v) {
     if (!places[v].window) continue;
     Stage fatten{.kind = StageKind::fatten,
@@ -494,8 +489,10 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
     const auto add = [&](Stage stage, bool depends) {
       stage.depends = depends && !settings.full;
       if (stage.depends) {
-        stage.reason = rule.reason;
-        stage.n = stage.kind == StageKind::cull && first_view ? 0 : rule.n;
+        const bool further = !first_view && settings.worth_a_view > 0;
+        stage.reason = further ? Reason::if_more_culled : Reason::if_more_left;
+        stage.n = first_view ? 0 : settings.enough;
+        stage.m = further ? settings.worth_a_view : 0;
       }
       stages.push_back(std::move(stage));
     };
@@ -523,8 +520,8 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   stages.push_back({.kind = StageKind::further_rounds,
                     .ran = true,
                     .depends = true,
-                    .reason = settings.worth_a_round > 0 ? Reason::if_culled : Reason::if_changed,
-                    .n = settings.worth_a_round,
+                    .reason = settings.worth_a_view > 0 ? Reason::if_culled : Reason::if_changed,
+                    .n = settings.worth_a_view,
                     .m = static_cast<std::uint64_t>(settings.rounds)});
   return stages;
 }

@@ -59,8 +59,10 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
           .objects_alone = options.objects_alone,
           .full = options.full,
           .enough = thrifty ? kFewTriangles : 0,
-          .least_objects = thrifty ? kFewObjects : 0,
-          .worth_a_round = thrifty ? kWorthARound : 0};
+          .least_objects = !thrifty                                    ? 0
+                           : query_of(options) == QueryMode::occlusion ? kFewObjects
+                                                                       : kNoObjectLevel,
+          .worth_a_view = thrifty ? kWorthAView : 0};
 }
 
 Stage setup_stage(const Fattener& fattener) {

@@ -147,8 +147,8 @@ std::string reason_of(const Stage& stage) {
     case Reason::all_views:
       return "culled is what every view clears";
     case Reason::little_culled:
-      return "round " + std::to_string(stage.round) + " culled " + n + " of " + triangles(stage.m) +
-             ": testing the rest is cheaper than another round";
+      return "only " + n + " of " + triangles(stage.m) +
+             " were culled: testing the rest is cheaper than another view";
     case Reason::owners:
       return "every triangle is an owner";
     case Reason::clusters_given:
@@ -157,7 +157,7 @@ std::string reason_of(const Stage& stage) {
       return "occlusion queries, more than " + triangles(stage.n);
     case Reason::clusters_small:
       return triangles(stage.n) + ", at most " + m;
-    case Reason::clusters_flags:
+    case Reason::flags:
       return "flags: a question costs nothing";
     case Reason::sweep:
       if (!stage.k) return "boxes of objects, then of their triangles";
@@ -199,7 +199,9 @@ std::string reason_of(const Stage& stage) {
     case Reason::if_changed:
       return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
-      return "if the round before culled at least one triangle in " + n + at_most_rounds(stage);
+      return "if the last view culled at least one triangle in " + n + at_most_rounds(stage);
+    case Reason::if_more_culled:
+      return "if more than " + triangles_left(stage.n) + ", and the last view culled one in " + m;
     case Reason::if_candidates:
       return "if there are candidates";
   }

@@ -26,7 +26,7 @@ CullSettings settings_of(const Fattener& fattener) {
           .fattener = fattener,
           .radius = {},
           .least_objects = kFewObjects,
-          .worth_a_round = kWorthARound};
+          .worth_a_view = kWorthAView};
 }
 
 CullResult cull_of(const Scene& scene, const CullSettings& settings) {
@@ -69,11 +69,16 @@ TEST(CullRules, ObjectsAreAskedAsAWholeFromSixteenOn) {
     CullSettings always = settings;
     always.least_objects = 0;
     EXPECT_TRUE(asked_objects(cull_of(scene, always).stages));
+    CullSettings never = settings;
+    never.least_objects = kNoObjectLevel;
+    const CullResult result_of_never = cull_of(scene, never);
+    EXPECT_FALSE(asked_objects(result_of_never.stages));
+    EXPECT_EQ(find_stage(result_of_never.stages, StageKind::objects)->reason, Reason::flags);
   }
 }
 
 // Whatever is left out, what intersects stays, and what a run without rules culls is a superset.
-TEST(CullRules, ARoundFollowsOneThatCulledAnEighth) {
+TEST(CullRules, AViewFollowsOneThatCulledAThird) {
   const Fattener fattener = obb_fattener();
   int left_out = 0, went_on = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -81,20 +86,25 @@ TEST(CullRules, ARoundFollowsOneThatCulledAnEighth) {
     const Scene scene = lab::random_scene(seed);
     const CullSettings settings = settings_of(fattener);
     CullSettings without = settings;
-    without.worth_a_round = 0;
+    without.worth_a_view = 0;
     const CullResult result = cull_of(scene, settings), all = cull_of(scene, without);
     EXPECT_TRUE(
         std::includes(result.live.begin(), result.live.end(), all.live.begin(), all.live.end()));
-    int rounds = 0;
-    for (const Stage& stage : result.stages) rounds = std::max(rounds, stage.round);
-    const Stage* stage = find_stage(result.stages, StageKind::further_rounds);
-    if (stage != nullptr && stage->reason == Reason::little_culled) {
+    std::uint64_t in = 0;   // live triangles before the visit
+    std::uint64_t out = 0;  // and behind it
+    for (const Stage& stage : result.stages) {
+      if (stage.kind == StageKind::fatten) {
+        EXPECT_GE((in - out) * kWorthAView, in);  // else there is no further view
+        went_on += in > 0;
+        in = stage.in;
+      }
+      if (stage.kind == StageKind::cull) out = stage.out;
+      if (stage.reason != Reason::little_culled) continue;
       ++left_out;
-      EXPECT_EQ(stage->round, rounds);
-      EXPECT_LT(stage->n * kWorthARound, stage->m);
-      EXPECT_EQ(stage->m - stage->n, result.live.size());
+      EXPECT_LT(stage.n * kWorthAView, stage.m);
+      EXPECT_EQ(stage.m, in);
+      EXPECT_EQ(stage.n, in - result.live.size());
     }
-    went_on += rounds > 1;
   }
   EXPECT_GT(left_out, 5);
   EXPECT_GT(went_on, 5);

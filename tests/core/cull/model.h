@@ -157,7 +157,7 @@ struct Schedule {
   bool all_views = false;       // a bit is set where every view sets it
   bool full = false;            // nothing is left out
   int enough = 0;               // live triangles at which the run ends; 0: never
-  int worth = 0;  // a round follows where the last culled one live triangle in so many; 0: always
+  int worth = 0;  // the run goes on where a view culled one live triangle in so many; 0: always
   Rules rules{};
 };
 
@@ -217,20 +217,28 @@ Bits visit(const World& world, const Schedule& s, int round, int view, Bits bits
   return bits;
 }
 
-inline bool few(const World& world, const Schedule& s, const Bits& bits) {
-  return !s.full && s.enough > 0 && count_live(world, bits) <= s.enough;
+/// Whether the run ends after a view (or round) that left of `live` triangles those without `bits`.
+inline bool ends(const World& world, const Schedule& s, int live, const Bits& bits) {
+  const int left = count_live(world, bits);
+  return !s.full &&
+         ((s.enough > 0 && left <= s.enough) || (live - left) * s.worth < live * (s.worth > 0));
 }
 
 template <class Watch>
 Bits run_round(const World& world, const Schedule& s, int round, Bits bits, Memory& memory,
-               const Watch& watch) {
+               bool& ended, const Watch& watch) {
   if (s.all_views && !s.quick) bits = forgotten(bits);
   const Bits start = bits;
   Bits agreed = {kNever, kNever};
   for (int v = 0; v < static_cast<int>(world.views.size()); ++v) {
     if (world.views[v].drawn) {
-      bits = visit(world, s, round, v, bits, memory, watch);
-      if (!s.all_views && few(world, s, bits)) break;
+      const int live = count_live(world, bits);
+      bool ran = false;  // a visit that is left out decides nothing
+      bits = visit(world, s, round, v, bits, memory, [&](const Step& step) {
+        ran |= step.ran;
+        watch(step);
+      });
+      if (!s.all_views && (ended = ran && ends(world, s, live, bits))) break;
     }
     if (!s.all_views) continue;
     if (!s.quick) bits = forgotten(bits);
@@ -251,11 +259,12 @@ Bits run(const World& world, const Schedule& s, Bits bits, const Watch& watch) {
   memory.fill({kNever, kNever});
   for (int round = 1;; ++round) {
     const Bits before = bits;
-    bits = run_round(world, s, round, bits, memory, watch);
+    bool ended = false;
+    bits = run_round(world, s, round, bits, memory, ended, watch);
     const int live = count_live(world, before), culled = live - count_live(world, bits);
     const bool changed = s.quick && s.rules.until_no_bit ? bits != before : culled > 0;
-    if (!changed || round == s.rounds || few(world, s, bits)) break;
-    if (!s.full && (culled == live || (s.worth > 0 && culled * s.worth < live))) break;
+    if (s.all_views) ended = ends(world, s, live, bits);
+    if (!changed || round == s.rounds || ended || (!s.full && culled == live)) break;
   }
   return s.quick ? bits : forgotten(bits);
 }

@@ -252,7 +252,7 @@ inline Outcome by_core(const Case& c, Fault fault = Fault::none) {
   settings.full = s.full;
   settings.enough = static_cast<std::uint32_t>(s.enough);
   settings.least_objects = static_cast<std::uint32_t>(c.least_objects);
-  settings.worth_a_round = static_cast<std::uint32_t>(s.worth);
+  settings.worth_a_view = static_cast<std::uint32_t>(s.worth);
   settings.bits = bits_of(c, c.start);
   Outcome out;
   settings.watch = [&](const CullStep& step) {
