@@ -91,7 +91,7 @@ step() {
   say "$text (part $name, at most $limit s)"
   start=$SECONDS
   # The command runs in the background, since bash handles signals during `wait`, but not during a foreground
-  # command. A background command ignores Ctrl-C unless `env` restores it. timeout passes on its signals.
+  # command. A background command ignores Ctrl-C unless `env` restores the default. timeout passes its signals on.
   env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
   child=$!
   wait "$child" || status=$?
@@ -188,7 +188,7 @@ failed=()
 for file in "$out"/steps/*; do
   if [[ $(<"$file") == 1\ * ]]; then failed+=("${file##*/}"); fi
 done
-# section HEADING PATTERNS...: prints the output of the parts that are done and match.
+# section HEADING PATTERNS...: prints the output of each part that is done and whose name matches a pattern.
 # shellcheck disable=SC2016 # the backticks are those of the page
 section() {
   local heading=$1 pattern part status seconds

@@ -10,7 +10,7 @@ root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 exec </dev/null
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/sbin:/sbin"
 meshes=$root/build/meshes
-# The path of the archive with the meshes in the package. An installed package has it as /$inside.
+# The path, in the package, of the archive with the meshes. Installing the package writes /$inside.
 inside=usr/share/doc/libcgal-dev/data.tar.gz
 
 # The number of triangles of each mesh. A file with another number is another mesh.
@@ -23,8 +23,8 @@ declare -A triangles=(
   [elephant.off]=5558
 )
 
-# Prints the number of faces of an OFF file. It is the second count after the word OFF. Comments and
-# empty lines may come before the counts.
+# Prints the number of faces of an OFF file. This is the second count after the word OFF. Comments
+# and empty lines may come before the counts.
 faces_in_header() {
   awk '{ sub(/#.*/, ""); sub(/^[ \t]*[A-Z]*OFF/, "") } NF { print $2; exit }' "$1"
 }
@@ -78,7 +78,7 @@ take_from() {
 }
 
 # Downloads the package into $work with the system's package lists. If that fails, downloads new
-# package lists into $work and tries again. This needs no root and changes nothing on the system.
+# package lists into $work and tries again. Neither attempt needs root or changes the system.
 download() {
   # With this option, apt as root does not change to the user _apt, who may not write here.
   local -a apt=(apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=2)

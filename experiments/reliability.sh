@@ -51,7 +51,7 @@ failed=()
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 device=(${DEVICE:+--device "$DEVICE"})
 
-# mesh_scene SCENE: compares FAR with exact on a scene and its copies.
+# mesh_scene SCENE: compares FAR with the method exact on a scene and its copies.
 mesh_scene() {
   local scene copy resolutions methods phase
   for copy in "" @far @tiny @huge @ground; do
@@ -79,7 +79,7 @@ boxes_run() {
       }' || failed+=("$*")
 }
 
-# moving_scene SCENE: a row for each of the METHODS, which may have options (far --offset exact).
+# moving_scene SCENE: runs each of the METHODS on the scene and prints its row. A method may have options (far --offset exact).
 moving_scene() {
   local frames=${FRAMES:-100} method record
   while read -r method; do
@@ -97,7 +97,7 @@ moving_scene() {
   done < <(tr , '\n' <<<"${METHODS:-boxes,i-collide,far,far --offset exact}")
 }
 
-# distances_of SCENE: prints the distances of a scene moved apart. Takes a record if there is one, else runs the program.
+# distances_of SCENE: prints distances after half of the objects moved away. Reuses the record of an earlier run if there is one.
 distances_of() {
   local diagonals record
   for diagonals in 0 1e-12 1e-3 1 1e3; do

@@ -30,11 +30,11 @@ farcull_packages=(
   libsqlitecpp-dev libsqlite3-dev libpango1.0-dev libcairo2-dev fonts-dejavu-core
   # the report of what was measured
   python3-matplotlib python3-pandas
-  # pages of pictures; the build works without
+  # pages of pictures; the build works without this package
   libjs-three
-  # the Python module; the build works without
+  # the Python module; the build works without these packages
   python3-dev pybind11-dev python3-numpy
-  # libraries that farcull bench compares with; the build works without
+  # libraries that farcull bench compares with; the build works without these packages
   libfcl-dev libembree-dev libbullet-dev libode-dev
 )
 # Packages that only tests need. A test whose package is missing is skipped, and names the package. gappa proves the bounds of
@@ -106,9 +106,9 @@ farcull_setup() {
   fi
 }
 
-# Prints how many compilers may run at once: one for each core, and at most one for each 2 GiB of
-# memory, which a file that includes CGAL takes. CMake's variable CMAKE_BUILD_PARALLEL_LEVEL
-# overrides it.
+# Prints how many compilers may run at once: one for each core, but at most one for each 2 GiB of
+# memory, since a file that includes CGAL takes 2 GiB. CMake's variable CMAKE_BUILD_PARALLEL_LEVEL
+# overrides this number.
 farcull_jobs() {
   if [[ -n ${CMAKE_BUILD_PARALLEL_LEVEL:-} ]]; then
     printf '%s\n' "$CMAKE_BUILD_PARALLEL_LEVEL"

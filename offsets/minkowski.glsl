@@ -1,15 +1,15 @@
-// Entry and exit of the line through a pixel centre with a triangle fattened by a ball, widened outward. This file compiles
-// as GLSL and as C++, after offsets/slab.glsl.
+// Finds where the line through a pixel centre along z enters and leaves a triangle fattened by a ball. Widens the interval
+// outward. This file compiles as GLSL and as C++, after offsets/slab.glsl.
 //
 // The solid: hull(v0, v1, v2) + ball(r), cut by zlo <= z <= zhi; a degenerate triangle makes it a capsule or a ball.
 //   s0 = (m, zlo), s1 = (v0 - m, r), s2 = (v1 - m, zhi), s3 = (v2 - m, -); r <= 2^20
-// Its surface is three spheres, three cylinders along the edges and the two shifted triangles. The line's first and last
-// contact with each part is found in plain float arithmetic, and only serves to choose a normal. Any normal n bounds the
-// solid by the halfspace n . p <= max n . v_i + r |n|, so an inaccurate contact cannot make the returned bound wrong. If
-// the contact is accurate, the halfspace touches the solid there (docs/budget.md, "The exact offset"). The extent, the
-// length and the halfspace must use the same bits of n. In GLSL, a variable that is not `precise` may be recomputed with
-// other roundings at each use. So every variable that holds a normal is precise, and so are the parameters through which a
-// function returns a normal (docs/budget.md, "One normal").
+// The surface has three spheres, three cylinders along the edges and the two shifted triangles. The line's first and last
+// contact with each part is found in plain float arithmetic, and only serves to choose a normal. Any normal n bounds the solid
+// by the halfspace n . p <= max n . v_i + r |n|, so an inaccurate contact cannot make the returned bound wrong. If the contact
+// is accurate, the halfspace touches the solid there (docs/budget.md, "The exact offset"). The extent along n, the length of n
+// and the halfspace must use the same bits of n. In GLSL, a variable that is not `precise` may be recomputed with other
+// roundings at each use. So every variable that holds a normal is precise, and so are the parameters through which a function
+// returns a normal (docs/budget.md, "One normal").
 
 // An upper bound of the solid's extent along n, from the origin m.
 FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {

@@ -172,9 +172,9 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// Computes the interval with this machine's floats and with the number type Worst, and takes the
-// narrower bound at each end. GLSL permits both roundings. Worst alone may choose other normals and
-// give a wider interval.
+// Computes the interval with this machine's floats and with the number type Worst. At each end,
+// takes the bound that makes the interval narrower. GLSL permits both roundings. Worst alone may
+// choose other normals and give a wider interval.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

@@ -15,8 +15,8 @@ namespace farcull {
 
 /// The shader function offsets/obb.glsl evaluates the box in each pixel. This is the reliable path.
 Fattener obb_fattener();
-/// The box is drawn as a closed surface of twelve triangles with interpolated depth. This is the
-/// published path, for comparison.
+/// The fattener draws the box as a closed surface of twelve triangles with interpolated depth. This
+/// is the published path, for comparison.
 Fattener obb_surface_fattener();
 
 // The exact offset: the Minkowski sum of a triangle and a ball. Its surface is made of three
@@ -24,7 +24,7 @@ Fattener obb_surface_fattener();
 // 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates the offset in each
 // pixel.
 
-/// A primitive that clipping left with more than three corners is drawn as a fan of triangles. Each
+/// A primitive with more than three corners after clipping is drawn as a fan of triangles. Each
 /// triangle is fattened. The union of these solids contains the fattened polygon.
 Fattener minkowski_fattener();
 
@@ -32,9 +32,9 @@ Fattener minkowski_fattener();
 
 /// Returns the corners of a rectangle inside `bounds`. The rectangle contains the image of
 /// `points`, fattened by a disc of `radius` px. It lies along the longest edge if it then fits into
-/// `bounds`. Otherwise it is aligned with the axes and cut off at `bounds`, at least a pixel
-/// outside the window. The error budget has a term "input" for the rounding of the corners to the
-/// nearest floats.
+/// `bounds`. Otherwise it is aligned with the axes and cut off at `bounds`, which are at least a
+/// pixel outside the window. The corners are rounded to the nearest floats. The term "input" of the
+/// error budget covers this rounding.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
                                      const ProxyBounds& bounds);
 

@@ -1,12 +1,12 @@
-// Cuts a line through a pixel centre along z with slabs and halfspaces. Every bound is widened outward. This file compiles as
-// GLSL and as C++, before the file of an offset.
+// Cuts a line through a pixel centre along z with slabs and halfspaces. Widens every bound outward. This file compiles as GLSL
+// and as C++, before the file of an offset (obb.glsl or minkowski.glsl).
 //
-// In C++, a float may hold many pixels, one in each lane of a vector (core/native/glsl_lanes-inl.h). A FAR_BOOL may then differ
-// from lane to lane: FAR_SELECT computes both of its sides and chooses per lane. An `if` needs FAR_UNIFORM: a condition that is
+// In C++, the type float may be a vector with one pixel in each lane (core/native/glsl_lanes-inl.h). Then a FAR_BOOL has a value
+// per lane, and FAR_SELECT computes both alternatives and chooses per lane. An `if` needs FAR_UNIFORM, with a condition that is
 // the same for all pixels of a solid.
 //
-// An operation errs by u = 2^-23 in any rounding mode, a division by 2.5 u (GLSL 4.50, 4.7.1; |divisor| >= 2^-20 here, the
-// quotient < 2^126); results below 2^-126 may be flushed. The constants are derived in docs/budget.md, "The oriented box".
+// u = 2^-23. The relative error is at most u for an operation in any rounding mode, and 2.5 u for a division (GLSL 4.50, 4.7.1;
+// |divisor| >= 2^-20, quotient < 2^126). Results below 2^-126 may be flushed. Constants: docs/budget.md, "The oriented box".
 
 #ifndef FAR_WIDEN  // 0 in the test that shows what happens without the widening
 #define FAR_WIDEN 1.0f
@@ -17,8 +17,8 @@ FAR_CONSTANT kUp = 1.0f + kEightU;
 FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;  // results below 2^-126 may be flushed to zero
 FAR_CONSTANT kParallel = 9.5367431640625e-7f;  // 2^-20
 
-// Cuts the interval [lo, hi] of the line with one slab. Returns false if the line misses the slab. m is the centre of the slab.
-// d = c - m.xy for the pixel centre c; mz = m.z. reach >= |z - m.z| on the solid.
+// Cuts the interval [lo, hi] of the line with one slab. Returns false if the line misses the slab. m: the slab's centre.
+// d = c - m.xy for the pixel centre c; mz = m.z. reach: at least |z - m.z| for every point of the solid.
 FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = slab.x * d.x;
   FAR_PRECISE float sy = slab.y * d.y;

@@ -8,9 +8,9 @@
 // A box has the minima and maxima of the coordinates. A gap between boxes is a difference computed
 // in double. Rounding is monotone: if the rounded gap exceeds the clearance, so does the exact gap.
 //
-// The classes of Accounting add up only if the join lost no pair. But they would add up, too, if
-// the join lost one pair and counted another twice. So the certificate's BoxPairs enumerates the
-// pairs with overlapping boxes again, and the two sets are compared.
+// The classes of Accounting would still add up if the join lost one pair and counted another pair
+// twice. So the certificate's BoxPairs enumerates the pairs with overlapping boxes again, and the
+// two sets of pairs are compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -67,8 +67,8 @@ void include(Bounds& bounds, const Bounds& other) {
   }
 }
 
-/// Returns false iff a gap between the boxes along an axis, computed in double, exceeds the
-/// clearance. Exact for clearance 0, since the difference of unequal doubles is never 0.
+/// False iff a gap between the boxes along an axis, computed in double, exceeds the clearance. For
+/// clearance 0 the answer is exact, since the difference of unequal doubles is never 0.
 bool meet(const Bounds& a, const Bounds& b, double clearance) {
   for (int axis = 0; axis < 3; ++axis) {
     if (b.lo[axis] - a.hi[axis] > clearance || a.lo[axis] - b.hi[axis] > clearance) return false;

@@ -1,4 +1,4 @@
-// Independent accounting: each pair of triangles that counts is either kept, or proved apart, or
+// Independent accounting: each pair of triangles that counts is kept by culling, proved apart or
 // missed. A pair counts if its triangles are of different objects, or of one object marked `self`.
 //
 // The accounting shares no code with the culling. It computes boxes itself, and finds the pairs
@@ -68,7 +68,7 @@ struct AccountingSteps {
 };
 
 /// Counts the pairs of each class. kept: the pairs that culling left to the exact tests, sorted,
-/// each once, a < b; they count and are not ignored. Memory O(triangles + kept). Throws
+/// each once, a < b. Kept pairs count and are not ignored. Memory O(triangles + kept). Throws
 /// std::logic_error in these cases:
 /// - `kept` is not as described above, so that the counts would be wrong.
 /// - validate() would not accept the ranges of the scene.

@@ -23,9 +23,9 @@ namespace {
 
 // True if the closed boxes of the triangles are more than the clearance D apart along an axis,
 // computed by differences in double. Rounding is monotone: if a rounded difference is above D, so
-// is the exact difference. The join finds all pairs for which this function is false. It grows each
-// box by at least D/2 + ulp(D)/2. If the grown boxes are disjoint, an exact difference is above D +
-// ulp(D), so its rounded value is above D.
+// is the exact difference. The join finds all pairs for which this function is false: the join
+// grows each box by at least D/2 + ulp(D)/2. If the grown boxes are disjoint, an exact difference
+// is above D + ulp(D), so its rounded value is above D.
 bool farther_along_an_axis(const Scene& scene, const TrianglePair& pair, double clearance) {
   const Box a = grown_box(scene, pair.a, 0), b = grown_box(scene, pair.b, 0);
   for (int k = 0; k < 3; ++k) {

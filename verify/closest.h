@@ -56,10 +56,10 @@ constexpr std::uint8_t number_of(const Feature& feature) {
   return static_cast<std::uint8_t>(3 * static_cast<int>(feature.kind) + feature.index);
 }
 
-/// Two closest points of two triangles. Several pairs of points may be equally near (parallel
-/// edges, triangles that overlap). The points here are on the first features F of a and G of b,
-/// ordered by F and then by G, that hold two closest points (docs/proximity.md, "Two nearest
-/// points"). A feature includes its boundary here.
+/// Two closest points of two triangles a and b. If several pairs of points are equally near, as on
+/// parallel edges, the features choose one pair. The points are on the first features F of a and G
+/// of b, ordered by F and then by G, that hold two closest points (docs/proximity.md, "Two nearest
+/// points"). Here a feature includes its boundary.
 struct Closest {
   SquaredDistance squared;
   double distance = 0;              // squared.root()
@@ -88,13 +88,12 @@ std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const Tria
 // ---- two parallel planes between two triangles, exactly. They show for many other pairs of
 // triangles that these pairs are no nearer.
 
-/// Let p and q be closest points of the triangles a and b, and w = q - p. Both planes are
-/// perpendicular to w. The first plane goes through p, the second plane through q. reach(s) is how
-/// far a triangle s extends beyond the first plane in the direction of w. start(t) is how far
-/// behind the second plane a triangle t begins. Both lengths have the same unit. A length is
-/// negative on the other side of its plane. If reach(s) <= start(t), then w.(y - x) >= w.w for all
-/// points x of s and y of t. So |y - x| >= |w|: s and t are no nearer than a and b. If reach(s) <
-/// start(t), they are farther apart.
+/// Let p and q be closest points of the triangles a and b, and w = q - p. The first plane goes
+/// through p, the second plane through q. Both planes are perpendicular to w. For a triangle s,
+/// reach(s) is the largest w . (x - p) of all points x of s. For a triangle t, start(t) is the
+/// least w . (y - q) of all points y of t. Both are scaled by the same positive number. If reach(s)
+/// <= start(t), then w . (y - x) >= w . w for all x and y. So |y - x| >= |w|: s and t are no nearer
+/// than a and b. If reach(s) < start(t), s and t are farther apart than a and b.
 class PlanesBetween {
  public:
   /// Throws std::logic_error if the triangles meet.

@@ -92,8 +92,8 @@ bool vertex_edge(const Vector<Integer>& p, const Vector<Integer>& q, const Vecto
   return true;
 }
 
-/// Looks for the points of the corner p and the face of t. Let e and f be the edges from corner t0,
-/// n = e x f, and p - t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f. Since n x f is
+/// Looks for the closest points of the corner p and the face of t. Let e and f be the edges from
+/// t0, n = e x f, and p - t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f. Since n x f is
 /// perpendicular to n, the scalar product with n gives l. m follows in the same way.
 template <class Integer>
 bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Integer>& f) {
@@ -118,8 +118,8 @@ bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Inte
   return true;
 }
 
-/// Looks for the points of the edge p to p_end and the edge q to q_end. Returns false for parallel
-/// edges, which have no single closest pair.
+/// Looks for the closest points of the edge p to p_end and the edge q to q_end. Returns false for
+/// parallel edges, which have no single closest pair.
 template <class Integer>
 bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vector<Integer>& q,
                const Vector<Integer>& q_end, Found<Integer>& f) {
@@ -175,8 +175,8 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   return true;
 }
 
-/// Looks for the points of a feature of a and a feature of b. Two faces never have a single closest
-/// pair.
+/// Looks for the closest points of a feature of a and a feature of b. Two faces never have a single
+/// closest pair.
 template <class Integer>
 bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>& b,
           const Feature& of_b, Found<Integer>& f) {

@@ -14,12 +14,12 @@
 
 namespace farcull {
 
-// Doubles guess the features, and integers prove the guess. If it fails, all features are tried.
+// Doubles guess the features. Integers prove the guess; if they cannot, all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
 // power of two that makes them integers. All later steps add, subtract and multiply integers.
 //
-// Which answer: the first pair of features, F of a and G of b ordered by F and then by G, that
+// The answer is the first pair of features, F of a and G of b ordered by F and then by G, that
 // holds two closest points. docs/proximity.md ("Two nearest points") proves that F and G hold only
 // one such pair, and that find() constructs it. For other features find() gives points of these
 // features or nothing, so never nearer points. So find() is called for all pairs of features in
@@ -31,7 +31,7 @@ namespace farcull {
 // hull of the corners y with product 0. So a guess is the answer under three conditions: these
 // corners are just the corners of F and of G; p and q are inside F and G; F or G is a corner, or
 // both are edges that are not parallel. Otherwise the features of these corners are tried in order,
-// until two features have points as near.
+// until two features have points as near as p and q.
 //
 // Doubles only choose which features to try, and leave out features that are provably not closest.
 // So only the final rounding affects the answer.
@@ -232,9 +232,8 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
   planes_ = std::move(planes);
 }
 
-// Returns reach (side 0) or start (side 1). The place of a corner is the scalar product of the
-// direction with the corner minus a point of the plane, in integers. Then a reach is rounded up,
-// and a start is rounded down.
+// Returns reach (side 0) or start (side 1) of t. Computes in integers the scalar products of the
+// direction with each corner minus a point of the plane. Rounds a reach up and a start down.
 double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
   const Vec3& origin = planes_->on[side];
   double out = 0;

@@ -46,11 +46,11 @@ ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> p
 
 // ---- kinds of contact ----
 //
-// How two triangles meet, as one of seven kinds, and the points that they have in common. Every two
-// triangles A and B have exactly one kind, the first that fits (docs/record.md, "Kinds of contact";
-// the labels of docs/suite.md are the same). A segment has two corners (its ends) and one edge
-// (itself); a point has one corner (itself). Neighbours are treated as any other triangles: the
-// part that they share is a contact too.
+// contact_kind() returns how two triangles meet, as one of seven kinds. contact_shape() also
+// returns the points in common. Every two triangles A and B have exactly one kind, the first that
+// fits (docs/record.md, "Kinds of contact"; the labels of docs/suite.md are the same). A segment
+// has two corners (its ends) and one edge (itself); a point has one corner (itself). Neighbours are
+// treated as any other triangles: the part that they share is a contact too.
 
 enum class ContactKind : std::uint8_t {
   apart,         // no point in common: a pair that collides only by a clearance

@@ -1,7 +1,7 @@
 // Finds how two triangles meet if one of them is a segment or a point: cuts the segment or point by
 // the half-spaces that bound the other triangle. All numbers are integers. The three coordinates of
-// a point have one denominator. So only the answer is rounded. This file also answers for lists of
-// pairs.
+// a point have one denominator. So only the answer is rounded. This file also has the functions
+// that take lists of pairs.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -101,9 +101,9 @@ struct Hull {
   }
 };
 
-/// Cuts a segment to the part with sign * value >= 0. Returns false if nothing is left. The new end
-/// is the sum of both old ends, each times the magnitude of the other end's value. Since
-/// bound.value() is linear in (x, w), it is 0 at the new end.
+/// Cuts a segment to the part where sign * bound.value() >= 0. Returns false if nothing is left.
+/// The new end is the sum of both old ends, each times the magnitude of the other end's value.
+/// Since bound.value() is linear in (x, w), it is 0 at the new end.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;

@@ -18,9 +18,9 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Exact signs of determinants of the corners of two triangles. Numbers 0 to 2 are the corners of
-/// a, 3 to 5 the corners of b. Doubles decide most signs. A determinant is 0 if each of its terms
-/// has a factor 0, as for faces of boxes. CGAL decides the rest.
+/// Exact signs of determinants of the corners of two triangles. Corners 0 to 2 are those of a,
+/// corners 3 to 5 those of b. Doubles decide most signs. A determinant is 0 if each of its terms
+/// has a factor 0, as for faces of boxes. CGAL decides the other signs.
 class Signs {
  public:
   Signs(const Corners& a, const Corners& b) : a_(a), b_(b) {}

@@ -10,8 +10,8 @@ namespace farcull {
 
 /// A point that two triangles share, by numbers of corners: 0 to 2 are the corners of a, 3 to 5
 /// those of b. If from == to, the point is this corner. Otherwise the point is where the edge
-/// between these corners meets a plane. For triangles in one plane, this plane is parallel to
-/// `axis` and goes through the first two corners of `other`; else it goes through all three.
+/// between these corners meets a plane. If the triangles lie in one plane, the plane is parallel to
+/// `axis` and goes through the first two corners of `other`. If not, it goes through all three.
 struct Place {
   int from = 0, to = 0;
   std::array<int, 3> other = {};

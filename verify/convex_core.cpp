@@ -1,8 +1,8 @@
-// A core grows around a seed, within a box. Triangles cut the core in the order of their distance
-// from the seed. A cut is made along the triangle's own plane, or along a plane perpendicular to
-// the shortest segment from the seed to the triangle (like Deits and Tedrake, Computing Large
-// Convex Regions of Obstacle-Free Space through Semidefinite Programming, 2015, for ellipsoids).
-// For a solid with few flat faces, the cores are large boxes or wedges.
+// A core (convex_core.h) grows around a seed, within a box. It is cut at one triangle after
+// another, the nearest to the seed first. A cut is made along the triangle's own plane, or along a
+// plane perpendicular to the shortest segment from the seed to the triangle (like Deits and
+// Tedrake, Computing Large Convex Regions of Obstacle-Free Space through Semidefinite Programming,
+// 2015, for ellipsoids). For a solid with few flat faces, the cores are large boxes or wedges.
 #include "verify/convex_core.h"
 
 #include <Eigen/Geometry>
@@ -52,8 +52,8 @@ struct HalfSpace {
   double reach;
 };
 
-/// True only if normal . (p - seed) > most for all p of t. A product of differences has 5
-/// roundings, relative to the magnitudes. `most` has 5 as well. 16 u covers all of them.
+/// True only if normal . (p - seed) > most for all p of t. The computed product has 5 roundings,
+/// each relative to the magnitudes, and so has `most`. 16 u covers all of them.
 bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
   double least = kInf, magnitude = size;
   for (const Vec3& v : t) {
@@ -65,8 +65,8 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
 }
 
 /// True only if the hull of the points is proved to be a core, as described in convex_core.h. near:
-/// all triangles that may meet the hull. planes: the normals of these planes are tried before the
-/// normal of a triangle.
+/// all triangles that may meet the hull. For the plane that divides a triangle from the hull, the
+/// normals of `planes` are tried before the normal of the triangle.
 bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
@@ -154,8 +154,8 @@ struct Grown {
 };
 
 /// Returns the core around a seed. Each plane is moved towards the seed by the fraction `pull` of
-/// its distance, so that one plane cuts off many triangles of a curved surface. near: all triangles
-/// that meet the region, the nearest to the seed first.
+/// its distance from the seed, so that it cuts off many triangles of a curved surface. near: all
+/// triangles that meet the region, the nearest to the seed first.
 std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>& near,
                           const Box& region, const Vec3& seed, double pull) {
   const double size = (region.hi - region.lo).norm();
@@ -190,9 +190,9 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
 }
 
 /// True only if a plane perpendicular to t has all corners of a, moved by t, on one side and all
-/// corners of b on the other side. A corner that is moved and projected has 6 roundings, relative
-/// to the magnitude. Far from the origin, corners are taken relative to a corner of the common box
-/// of a and b. These differences are exact along an axis on which no coordinate is more than twice
+/// corners of b on the other side. The projection of a moved corner has 6 roundings, relative to
+/// the magnitude. Far from the origin, corners are taken relative to a corner of the common box of
+/// a and b. These differences are exact along an axis on which no coordinate is more than twice
 /// another (Sterbenz, Floating-Point Computation, 1974).
 bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   Vec3 origin = Vec3::Zero();

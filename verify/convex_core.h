@@ -19,7 +19,7 @@
 
 namespace farcull {
 
-/// A closed object with a tree of boxes. One ClosedObject serves all pairs of the object.
+/// A closed object with a tree of boxes. It is made once and used for all pairs of the object.
 class ClosedObject {
  public:
   using Corners = std::array<Vec3, 3>;

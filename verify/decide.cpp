@@ -122,8 +122,8 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// At most this many pairs are in a block: enough to pay for the shared counter, few enough to
-// balance threads.
+// At most this many pairs are in a block. Smaller blocks would increment the shared counter more
+// often; larger blocks would balance the threads worse.
 constexpr std::size_t kBlock = 1024;
 
 /// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.

@@ -23,12 +23,12 @@
 
 namespace farcull {
 
-// What the answers claim. `objects`: an answer claims that no pair of its objects is nearer. A
-// missing answer claims that no pair of the objects is within the distance asked for. `nearest`: a
-// missing answer claims that neither object is among the k nearest of the other. So no pair of
-// their triangles is nearer than the kth neighbour of either object. If the other object has a
-// lower index than this neighbour, no pair is equally near. `all`: the answers are all pairs within
-// the distance.
+// The claims of answers, by the kind of question. `objects`: an answer claims that no pair of its
+// objects is nearer. A missing answer claims that no pair of the objects is within the distance
+// asked for. `nearest`: a missing answer claims that neither object is among the k nearest of the
+// other. So no pair of their triangles is nearer than the kth neighbour of either object. If the
+// other object has a lower index than this neighbour, no pair is equally near. `all`: the answers
+// are all pairs within the distance.
 
 namespace {
 
@@ -94,8 +94,8 @@ class Undecided {
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return &DistanceAccounting::farther_by_exact;
-    // No direction shows that the pair is far enough apart. So its nearest points must show that it
-    // is not.
+    // None of the 38 directions proves the triangles far enough apart. So their exact distance has
+    // to be too short; otherwise one of the two computations is wrong.
     const auto order = integer_distance(s, t).squared <=> length->squared;
     if (order > 0 || (order == 0 && or_as_far)) {
       throw std::logic_error(
@@ -140,7 +140,7 @@ class Join {
            threshold.bound == Bound::below;
   }
 
-  /// a, b: roots of the trees of two objects, or one root twice.
+  /// Settles all pairs of two objects, or of one if a == b. a, b: the roots of their trees.
   void objects(std::uint32_t a, std::uint32_t b) {
     a == b ? one(a) : two(a, b);
     // An answer whose boxes are too far apart is wrong, but still counts as an answer.

@@ -24,8 +24,8 @@
 namespace farcull {
 
 /// An answer about the objects a <= b. It claims that `pair` is the first of the nearest pairs of
-/// their triangles, or, for `all`, that `pair` is within the distance. If a == b, neighbours
-/// (verify/exact.h) are left out.
+/// their triangles, or, for `all`, that `pair` is within the distance asked for. If a == b,
+/// neighbours (verify/exact.h) are left out.
 struct ClaimedDistance {
   std::uint32_t a = 0, b = 0;  // indices of the objects
   TrianglePair pair;           // a triangle of a and one of b
@@ -81,9 +81,9 @@ struct DistanceAccounting {
   bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }
 };
 
-/// answers: sorted by objects, then by pairs, each once. Throws std::logic_error if they are not,
-/// if an answer names triangles that its objects do not have, or if the classes do not add up.
-/// Memory O(triangles + answers).
+/// Checks the answers and counts the pairs in each class. answers: sorted by objects, then by
+/// pairs, each once. Throws std::logic_error if they are not so, if an answer names triangles that
+/// its objects do not have, or if the classes do not add up. Memory O(triangles + answers).
 DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
                                      const DistanceQuestion& question);
 

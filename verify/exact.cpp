@@ -78,8 +78,8 @@ Hull rim_at(const Corners& part, const Vec3& v) {
 
 /// Decides about neighbours with one shared position v. Both triangles are unions of convex parts
 /// that contain v. The rim of a part does not contain v, unless the part is v itself. If two parts
-/// have a common point other than v, move this point away from v until it leaves one of the parts.
-/// There it is on the rim of this part, so the rim meets the other part.
+/// share a point other than v, the ray from v through this point leaves one part at its rim while
+/// it is in the other part. So a rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {
@@ -104,7 +104,7 @@ bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
   // Both triangles are segments on the line of p and q. They share more than the edge iff they
-  // extend beyond the same end of it.
+  // extend beyond the same end of the edge.
   const auto ends = std::minmax(p, q, lexicographically_less);
   const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };
   const auto above = [&](const Vec3& x) { return lexicographically_less(ends.second, x); };

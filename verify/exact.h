@@ -53,7 +53,7 @@ struct Collisions {
 
   /// Returns pairs and neighbour_pairs in one list; sorted if both lists are sorted.
   std::vector<TrianglePair> all() const;
-  /// Appends the pairs of later candidates, and adds their counts.
+  /// Appends the pairs of `next`, whose candidates come later, and adds its counts.
   void append(const Collisions& next);
 };
 
@@ -109,7 +109,7 @@ struct FirstCollisions {
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes the last pairs, in the order of both lists together, until at most `limit` pairs are
+/// Removes pairs, the last in the common order of both lists first, until at most `limit` pairs are
 /// left. Returns true if pairs were removed. Does not change counts. Precondition: both lists are
 /// sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);

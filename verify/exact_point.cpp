@@ -32,7 +32,7 @@ std::pair<int, int> indices(const mpq_class& x, int size) {
   return {std::max(lower, 0), std::min(upper, size - 1)};
 }
 
-// Returns the larger number as a double of the same sign: a positive number does not become 0.
+// Returns the larger number, cut off to a double. A positive number does not become 0.
 double larger(const mpq_class& a, const mpq_class& b) {
   const mpq_class& most = a > b ? a : b;
   const double cut = most.get_d();

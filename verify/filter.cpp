@@ -1,7 +1,7 @@
-// The filters with the proved bounds. filter_pairs() runs on SIMD lanes: each lane has a pair of
-// its own. Every operation rounds once, so the answers are the same as those of the scalars. The
-// operations on lanes are defined here, since verification shares no code with the canvas
-// (core/native) that it checks.
+// Compiles the filters with the proved bounds. filter_pairs() runs on SIMD lanes: each lane has a
+// pair of its own. Every operation rounds once, so the answers are the same as those of the
+// scalars. The operations on lanes are defined here, since verification shares no code with the
+// canvas (core/native) that it checks.
 //
 // Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
 // triangles. The few pairs whose triangles cross each other's planes are gathered again, so that

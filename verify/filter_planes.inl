@@ -42,8 +42,8 @@ FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
 
 // ---- sides of planes ----
 
-/// For each corner of s, a determinant whose sign is the corner's side of the plane of t. The sign
-/// is proved if the magnitude is above `bound`.
+/// The sides of the plane of a triangle t on which the corners of a triangle s lie. The sign of
+/// value[i] is the side of corner i; it is proved if |value[i]| > bound.
 struct Sides {
   Real value[3];
   Real bound;

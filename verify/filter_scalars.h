@@ -68,8 +68,8 @@ namespace farcull::filters {
 //
 // Underflow. Differences and sums of doubles are exact if they are subnormal. A product is off by
 // at most 2^-1075 more; all later roundings make that at most 2^-1073 (|w|_1 + 2) for the
-// determinant, and likewise for the others. `absolute` is more than 2^70 times that, so that it and
-// its products with numbers of at least 1 are normal numbers, which every processor handles fast.
+// determinant, and likewise for the other products. `absolute` is more than 2^70 times that. So it
+// and its products with numbers >= 1 are normal numbers, which every processor handles fast.
 //
 // Overflow. For every operation of the determinant the permanent has the same operation on
 // magnitudes, whose result is at least as large, since rounding is monotone. So if anything
@@ -138,12 +138,12 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
 }
 
 // Corners are relative to v; N = a1 x a2 and M = b1 x b2. The signs of A1 = M . a1 and A2 = M . a2
-// say on which sides of b's plane a's corners lie. The signs of B1 = N . b1 and B2 = N . b2 say the
-// same of b's corners. If A1 and A2 have the same sign, a meets b's plane only in v. The same holds
-// for B1 and B2. Otherwise each triangle meets the line of both planes in a segment from v. The
-// segments have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1): these are
-// sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1
-// = N x M. So the directions are the same iff A2 and B2 differ in sign.
+// are the sides of b's plane on which a's corners lie. The signs of B1 = N . b1 and B2 = N . b2 are
+// the sides of a's plane for b's corners. If A1 and A2 have the same sign, a meets b's plane only
+// in v. The same holds for B1 and B2. Otherwise each triangle meets the line of both planes in a
+// segment from v. The segments have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 -
+// b2 B1): these are sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N
+// and b1 B2 - b2 B1 = N x M. So the directions are the same iff A2 and B2 differ in sign.
 template <class Bounds>
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2) {
@@ -232,8 +232,8 @@ struct Closest {
 
 inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // returns 0 for NaN
 
-/// Offers the difference from p + s u to q + t v, the closest points of edge i of a and edge j of b
-/// except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
+/// Offers to `closest` the difference from p + s u to q + t v, the closest points of edge i of a
+/// and edge j of b except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
 inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Closest& closest) {
   const Vec3 &p = a[i], &p_end = a[(i + 1) % 3], &q = b[j], &q_end = b[(j + 1) % 3];
   const Vec3 u = p_end - p;
@@ -332,7 +332,7 @@ struct DistanceBounds {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// Lower bound: the distance is at least the gap over |d|. The quotient has one rounding, the
+/// Lower bound: the distance is at least gap_along() / |d|. The quotient has one rounding, the
 /// computed length is off by 3 u, and the factor 1 - 8 u, itself rounded once, covers both. The
 /// quotient does not underflow: a gap above 0 is a multiple of the last bit of the doubt, hence
 /// above 2^-104 |d|^2 (no |d_k| is much more than twice the extent), and |d| is at least 2^-450.

@@ -39,8 +39,8 @@ void count_excess(double excess, KernelTally& tally) {
 
 void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally) {
   if (!usable(answer)) return count(false, tally);
-  // The kernel widens by 2^-20. So a comparison with an interval in doubles that is slightly too
-  // large decides nearly always.
+  // The kernel widens its answer by 2^-20, far more than outer_interval() does. So the comparison
+  // with outer_interval() nearly always decides.
   const auto outer = box_line::outer_interval(c.cx, c.cy, c.solid);
   bool held = !outer || (answer.hit && answer.entry <= outer->lo && answer.exit >= outer->hi);
   if (!held) {

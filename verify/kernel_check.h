@@ -1,6 +1,6 @@
-// Decides with rationals whether a kernel's answer is right. The answer has to contain the part of
-// the line that is in the exact solid, and must not be much wider. The answer may come from a
-// device or from this CPU.
+// Decides with rationals whether a kernel's answer about a solid and a line along z is right. The
+// answer, from a device or from this CPU, has to contain the part of the line that is in the exact
+// solid, and must not be much wider.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// First looks for a dividing plane. Then cuts each triangle with a contact into convex pieces, and
-// casts a ray through a point of each piece along an axis, to both sides of the triangle.
+// Looks for a plane that divides the objects. Then cuts triangles with contacts into convex pieces,
+// and casts a ray along an axis, to both sides of the triangle, through a point of each piece.
 #include "verify/overlap.h"
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// The expanding polytope algorithm on all corners gives the first upper bound, along the direction
-// in which the shortest translation separates the hulls. Then the search improves both bounds. Both
+// The expanding polytope algorithm on all corners finds the shortest translation that separates the
+// convex hulls. It gives the first upper bound. Then a search improves both bounds. Both steps
 // compute in plain doubles, but the bounds are proved.
 #include "verify/penetration.h"
 
@@ -451,8 +451,8 @@ bool has_normal_products(const ClosedObject& solid) {
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads, const std::optional<DepthLimit>& limit) {
-  // Limits of the work for two objects. Larger objects get fewer cores, so that this takes about as
-  // long as finding their pairs of triangles.
+  // Limits of the work for two objects. Larger objects get fewer cores, so that the search takes
+  // about as long as finding their pairs of triangles.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
   const std::size_t most_cores = small ? 48 : 10, most_pairs = small ? 256 : 64;
   const int steps = small ? 200 : 60;

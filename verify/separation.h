@@ -55,7 +55,7 @@ bool farther_by_planes(const Points& a, const Others& b, double limit) {
   for (int step = 0; step < kSteps; ++step) {
     const double largest = near.cwiseAbs().maxCoeff();
     if (!(largest > 0 && largest < std::numeric_limits<double>::infinity())) return false;
-    // The exact direction is n, whose largest component is 1: its length is 1 to 1.8.
+    // n counts as exact. Its largest component is 1 or -1, so its length is from 1 to 1.8.
     const Vec3 n = near / largest;
     double s_most = -std::numeric_limits<double>::infinity(), t_least = -s_most, magnitude = 0;
     Vec3 s_at = Vec3::Zero(), t_at = Vec3::Zero();
@@ -69,9 +69,9 @@ bool farther_by_planes(const Points& a, const Others& b, double limit) {
       magnitude = std::max(magnitude, n.cwiseAbs().dot(t.cwiseAbs()));
       if (const double of_t = n.dot(t); of_t < t_least) t_least = of_t, t_at = t;
     }
-    // Each of the three terms of n . y has the rounding of y and of the product; then come two
-    // sums. So s_most and t_least are off by at most 4.01 u of `magnitude` and the loss to
-    // subnormal products. Their difference is rounded once more, 2 u of `magnitude`. The length is
+    // In n . y, each of three terms is rounded twice: in y and in the product. Then come two sums.
+    // So s_most and t_least are off by at most 4.01 u of `magnitude`, plus the loss to subnormal
+    // products. Their difference is rounded once more, by at most 2 u of `magnitude`. The length is
     // off by 4 u of itself, the quotient by 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
     if (!std::isfinite(magnitude)) return false;

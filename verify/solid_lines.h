@@ -1,5 +1,5 @@
-// The exact interval of a solid along a line in the direction of z. The floats of the Solid define
-// it exactly. A kernel's answer must contain this interval.
+// The exact interval in which a line along z lies in a solid. The floats of a Solid define the
+// solid exactly. A kernel's answer must contain this interval.
 #pragma once
 
 #include <algorithm>

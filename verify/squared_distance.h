@@ -1,6 +1,6 @@
 // Exact arithmetic in integers: doubles as integers of one scale, the integers behind a
 // SquaredDistance, and rounding of fractions to doubles. Only sources of verify/closest.h and
-// verify/contact.h and their tests use this.
+// verify/contact.h and their tests use this file.
 #pragma once
 
 #include <gmpxx.h>

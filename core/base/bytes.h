@@ -41,7 +41,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate has this hash of its pairs.
+/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate contains this hash of its pairs.
 class Sha256 {
  public:
   void add(std::string_view bytes);

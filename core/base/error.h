@@ -22,8 +22,8 @@ class Error : public std::runtime_error {
 
 // ---- names of parameters ----
 
-/// Replaces each {parameter} in the text by the program's spelling of its name. Without a spelling,
-/// the name stays without braces.
+/// Replaces each {parameter} in the text by the program's spelling of its name. If no spelling is
+/// set, only removes the braces.
 std::string spelled(const std::string& text);
 /// Sets how the program spells the name of a parameter, such as --depth-format on a command line.
 /// `spelling` must return an empty text for a name that is no parameter. spelled() then keeps the

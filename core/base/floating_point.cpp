@@ -1,7 +1,7 @@
-// Test operations show how the thread computes. Their operands are volatile, so that no compiler
-// computes the results. <cfenv> sets and restores the environment. In C libraries fenv_t includes
-// the flush-to-zero mode, and FE_DFL_ENV turns this mode off. FloatingPointGuard repeats the test
-// operations, so it notices a library that behaves differently.
+// floating_point() determines the environment by test operations. Their operands are volatile, so
+// that no compiler computes the results. FloatingPointGuard uses <cfenv>. In C libraries fenv_t
+// includes the flush-to-zero mode, and FE_DFL_ENV turns it off. The guard repeats the test
+// operations, so it notices a C library that behaves differently.
 #include "core/base/floating_point.h"
 
 #include <array>

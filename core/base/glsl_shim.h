@@ -1,4 +1,4 @@
-// Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
+// Defines the vector types, functions and macros with which a kernel file (*.glsl) compiles as C++.
 // Kernels write output parameters as FAR_OUT(t) and FAR_INOUT(t). FAR_PRECISE marks a float whose
 // computation must not be reassociated. FAR_KERNEL marks a function that several files may compile.
 // Contraction is off in all of farcull (CMakeLists.txt), so every operation is rounded once in both

@@ -1,10 +1,10 @@
 // Simulates a device whose arithmetic is as inaccurate as GLSL allows, for kernels (*.glsl)
 // compiled as C++. A Worst replaces a float. It is the range of all floats that permitted rounding
 // could give (GLSL 4.50, section 4.7.1; assumption A4). Sums, differences and products may be
-// rounded in any direction. Quotients err by 2.5 units in the last place, and square roots by 5 (as
-// 1 / inversesqrt). Operands and results below 2^-126 may be flushed to zero. A comparison is true
-// only if it is true for all floats of both ranges. Include a kernel after all headers, between
-// `#define float Worst` and `#undef float`.
+// rounded in any direction. Quotients err by at most 2.5 units in the last place, and square roots
+// by at most 5 (as 1 / inversesqrt). Operands and results below 2^-126 may be flushed to zero. A
+// comparison is true only if it is true for all floats of both ranges. Include a kernel after all
+// headers, between `#define float Worst` and `#undef float`.
 #pragma once
 
 #include <algorithm>
@@ -62,15 +62,15 @@ class Worst {
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
 
   // Returns a + b, rounded up if `sign` is 1 and down if it is -1. `s` is the sum rounded to
-  // nearest. `lost` is its exact rounding error, by Knuth's two-sum.
+  // nearest; `lost` is the exact rounding error of `s`, by Knuth's two-sum.
   static double sum(double a, double b, double sign) {
     const double s = a + b, part = s - a;
     const double lost = (a - (s - part)) + (b - part);
     return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
   }
 
-  // Widens [lo, hi] by `units` in the last place. Returns the smallest range of floats around it.
-  // If `units` is 0, a bound that is a float is unchanged, unless it is flushed to zero.
+  // Widens [lo, hi] by `units` units in the last place, and rounds outward to floats. If `units` is
+  // 0, a bound that is a float is unchanged, unless it is flushed to zero.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

@@ -1,4 +1,4 @@
-// A pool of threads. Starting a thread takes as long as a small step of a query.
+// Keeps a pool of threads, because starting a thread takes as long as a small step of a query.
 #include "core/base/parallel.h"
 
 #include <condition_variable>
@@ -50,7 +50,7 @@ bool spin_until(const Done& done) {
 }
 
 // Blocks all signals in the calling thread while the object exists. A thread that is started
-// meanwhile blocks them forever, so only threads of farcull's caller receive signals.
+// meanwhile keeps them blocked, so only threads of farcull's caller receive signals.
 class SignalsBlocked {
  public:
 #ifndef _WIN32

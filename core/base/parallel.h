@@ -17,8 +17,8 @@
 namespace farcull {
 
 /// Calls part(data, k) once for each k in 0 .. parts - 1, in the calling thread and in pooled
-/// threads. Calls may be nested: if no pooled thread is free, the calling thread makes all calls.
-/// Returns when all calls have returned. `part` must not throw.
+/// threads. `part` may call run_parts(). If no pooled thread is free, the calling thread makes all
+/// calls. Returns when all calls of `part` have returned. `part` must not throw.
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
 /// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if

@@ -1,6 +1,6 @@
-// A stage is a step of a run: whether the step runs or is left out, and why. A plan lists the
-// stages before a run; a trace lists them after it. Both use struct Stage, so a run can be compared
-// with its plan. A long computation reports its current step as a ProgressStep.
+// A Stage describes a step of a run: whether the step runs or is left out, and why. A plan lists
+// the stages before a run; a trace lists them after it. Both use struct Stage, so a run can be
+// compared with its plan. A long computation reports its current step as a ProgressStep.
 // experiments/record/stage_words.h has the texts of stages and steps.
 #pragma once
 
@@ -120,7 +120,7 @@ struct Stage {
   Reason reason = Reason::none;
   std::string fattener = {};   // name of the fattener, for some reasons
   std::uint64_t n = 0, m = 0;  // numbers whose meaning depends on the reason
-  // k: pairs ignored or compared; in a sweep, places that changed. l: lists that a sweep sorted.
+  // k: number of pairs ignored or compared (sweep: changed places). l: lists that a sweep sorted.
   std::optional<std::uint64_t> k = {};
   std::uint64_t l = 0;
   double ms = 0;

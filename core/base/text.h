@@ -1,5 +1,5 @@
 // Reads numbers from text, formats numbers for people, and suggests corrections of misspelt words.
-// Also tells whether a stream is a terminal, and its width.
+// Also tells whether a stream is a terminal, and how wide the terminal is.
 #pragma once
 
 #include <algorithm>

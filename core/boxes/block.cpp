@@ -174,8 +174,8 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     Spread spread = sampled_spread(items);
     if (spread.half() == 0) spread = whole_spread(items);
     if (spread.half() == 0) return;
-    // Moves boxes that span the whole spread to the front, because such a box would enlarge either
-    // half. Splits these boxes off if they are at most half of the items: the depth stays O(log n).
+    // Moves boxes that span the whole spread to the front, since they would enlarge either half.
+    // Splits them off if they are at most half of the items, so the depth stays O(log n).
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;

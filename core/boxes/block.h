@@ -25,8 +25,8 @@
 
 namespace farcull {
 
-/// Returns half the clearance, rounded up: boxes this far apart meet if each is grown by the
-/// result.
+/// Returns half the clearance, rounded up. Two boxes at most the clearance apart overlap if each is
+/// grown by the result.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }

@@ -55,7 +55,7 @@ struct Comparison {
   const NormalLanes* a_normals;  // null: normals are not compared
   const NormalLanes* b_normals;
 
-  // Appends to `certain` and to `perhaps`. Precondition: each list has room for 272 more pairs.
+  // Appends the overlapping pairs. Precondition: each list has room for 272 more pairs.
   HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
     const OneBox bound(b.bound);
     std::uint32_t rows = boxes::overlapping_bits(a.boxes, bound);

@@ -34,8 +34,8 @@ struct alignas(64) NormalLanes {
 struct NormalMargin {
   float reach, margin;
 };
-/// Returns empty if `reach` is too large or too small for floats. reach: the largest |coordinate|
-/// of the triangles' boxes, relative to the origin.
+/// Returns the margin, or empty if `reach` is too large or too small for floats. reach: the largest
+/// |coordinate| of the triangles' boxes, relative to the origin.
 std::optional<NormalMargin> normal_margin(float reach, double clearance);
 /// Computes the normals of 1 to kWide triangles.
 void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, const Vec3& origin,
@@ -58,7 +58,7 @@ struct LanePair {
   std::uint32_t a, b;
   bool drops_neighbours;  // leaves out pairs that share a vertex index
 };
-/// Appends the findings to `out`. vertices, normals: one for each element of `lanes`. `vertices`
+/// Compares blocks and appends to `out`. vertices, normals: one per element of `lanes`. `vertices`
 /// may be empty if no pair drops neighbours. If `normals` is empty, only boxes are compared.
 void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
                     std::span<const NormalLanes> normals, std::span<const LanePair> pairs,

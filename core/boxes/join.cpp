@@ -1,6 +1,6 @@
-// Finds pairs with a tree of boxes, item by item, several items in parallel. Item a gets only pairs
-// with b > a, so the result is sorted by a. If there are few owners, leaves are grouped by owner,
-// in order. Then an item is only compared with leaves of later owners.
+// Finds pairs of overlapping boxes with a tree, item by item, several items in parallel. For item
+// a, only pairs with items b > a are found, so the result is sorted by a. If there are few owners,
+// the tree's leaves are grouped by owner, and an item is only compared with leaves of later owners.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -505,7 +505,7 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
   };
   std::uint64_t given = give(some.between, {});
   if (neighbours) return given + give(some.inside, {});
-  // Keeps the vertices of one part at a time, to save memory. Few blocks occur in two parts.
+  // Keeps the vertices of one part of the pairs at a time. Few blocks occur in two parts.
   constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
   const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
   for (std::size_t from = 0; from < some.inside.size(); from += part) {

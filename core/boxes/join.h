@@ -150,8 +150,8 @@ struct BlockPairs {
 std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks);
 
 /// Pairs of blocks whose boxes overlap. If two triangles are at most the clearance apart, their
-/// blocks are such a pair: the grown boxes of the triangles have a common point, which lies in the
-/// boxes of the blocks.
+/// blocks are such a pair, because the grown boxes of the triangles have a common point, which lies
+/// in the boxes of the blocks.
 struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
   std::shared_ptr<const OrientedBlocks> oriented;  // null: only boxes along the axes are compared

@@ -64,8 +64,8 @@ struct BlockDecision {
 /// 2. Blocks with boxes along the axes, if few of these boxes overlap. Triangles are also compared
 ///    along normals if this drops most pairs of a sample.
 /// 3. Blocks with oriented boxes, if few of these boxes overlap in a sample.
-/// 4. A tree. threads: 0 for as many as there are cores; changes no answer. ignored: as for
-///    find_meetings().
+/// 4. A tree.
+/// threads: 0 for as many as there are cores; changes no answer. ignored: as for find_meetings().
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
                                std::span<const ObjectPair> ignored = {});
 

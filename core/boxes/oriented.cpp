@@ -1,5 +1,5 @@
-// Computes a block's frame from the second moments of its corners. Searches a tree of oriented
-// boxes, whose leaves are blocks, for each block. As in compare.cpp, only floats decide.
+// Computes a block's frame from the second moments of its corners. For each block, searches a tree
+// of oriented boxes for the blocks that it may meet. As in compare.cpp, only floats decide.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>

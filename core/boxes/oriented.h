@@ -53,8 +53,8 @@ struct OrientedBlocks {
   float margin = 0;  // two oriented boxes are apart if the gap along a direction is larger
 };
 
-/// Returns null if the coordinates are too large or too small for floats. regions: as for
-/// gather_scattered(). threads: 0 for as many as there are cores.
+/// Makes oriented blocks. Returns null if the coordinates are too large or too small for floats.
+/// regions: as for gather_scattered(). threads: 0 for as many as there are cores.
 std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double clearance,
                                                     std::span<const Box> regions, unsigned threads);
 

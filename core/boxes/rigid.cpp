@@ -1,6 +1,6 @@
-// Walks the trees of all objects that meet down to the blocks, one height of nodes after the other.
-// Only nodes that are in a pair are moved. The children of two nodes are compared in floats, as the
-// triangles of two blocks are (core/boxes/join.h).
+// Descends the trees of all objects that meet, from the roots to the blocks, one height at a time.
+// Moves only the boxes of nodes that are in a pair. The children of two nodes are compared in
+// floats, as the triangles of two blocks are (core/boxes/join.h).
 #include "core/boxes/rigid.h"
 
 #include <algorithm>

@@ -59,7 +59,7 @@ struct RigidBlocks {
   }
 };
 
-/// threads: 0 for as many as there are cores.
+/// Makes the blocks and trees. threads: 0 for as many as there are cores.
 RigidBlocks make_rigid_blocks(const Scene& scene, unsigned threads);
 
 /// Decides as decide_by_blocks() for the moved objects, but reads no vertices. Returns empty if

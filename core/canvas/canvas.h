@@ -84,20 +84,20 @@ struct NativeLines;  // defined in core/native/canvas.h
 
 /// The shader function of a solid, one source for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
-/// It considers the line in depth direction through the pixel centre c. It returns false if the
-/// line misses the solid. Else [entry, exit] contains the line's part inside the solid. The
-/// interval is widened outward by the rounding error of the function itself.
+/// The function considers the line in depth direction through the pixel centre c. It returns false
+/// if the line misses the solid. Otherwise [entry, exit] contains the line's part inside the solid.
+/// The function widens this interval by a bound of its own rounding error.
 struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
   /// Computes solid_interval as the least accurate device that GLSL allows
-  /// (core/base/glsl_worst.h). Returns false if any permitted rounding misses. Else sets the latest
-  /// entry and the earliest exit.
+  /// (core/base/glsl_worst.h). Returns false if some permitted rounding gives a miss. Otherwise
+  /// sets the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// Run solid_interval on this processor's vector lanes (core/native/canvas.h). draw_native draws
-  /// proxies; lines_native computes the entries and exits of single lines.
+  /// These two run solid_interval on this processor's vector lanes (core/native/canvas.h).
+  /// draw_native draws proxies; lines_native computes the entries and exits of single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
@@ -151,9 +151,9 @@ struct Drawables {
   std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z (px) and 0 for each corner
   std::vector<std::uint32_t> undrawable;         // items beyond the budget, without elements
 
-  /// For canvases that fit proxies while drawing (Canvas::fits_proxies). If sources[e] >= kFitted,
-  /// element e is proxies[sources[e] - kFitted]. Else fit(batch) makes it from triangle sources[e];
-  /// the caller sets items, count, out and done of `batch`. Null: sources and outlines are empty.
+  /// For canvases that fit proxies while drawing (Canvas::fits_proxies). Let s = sources[e]. If
+  /// s >= kFitted, element e is proxies[s - kFitted]. Otherwise fit(batch) makes it from triangle
+  /// s; the caller sets items, count, out and done of `batch`. Null: no sources and no outlines.
   void (*fit)(const FattenBatch& batch) = nullptr;
   FattenBatch batch;
   UninitializedVector<std::uint32_t> sources;
@@ -168,7 +168,7 @@ struct Drawables {
 constexpr std::uint32_t kFitted = 0x80000000;
 
 /// One element, drawn for a slot (the index of a result of the pass). kEverywhere is a quad over
-/// the window at the nearest depth. It may be stored, but not tested, and hides everything.
+/// the window at the nearest depth. This quad hides everything. It may be stored, but not tested.
 struct Draw {
   std::uint32_t element;
   std::uint32_t slot;
@@ -184,7 +184,7 @@ struct Step {
   std::uint32_t count;
 };
 
-/// Steps in order, on a depth buffer that is empty at first. Draws of one slot are consecutive.
+/// Steps are drawn in order; the depth buffer is empty at first. A slot's draws are consecutive.
 /// - store: each pixel keeps the nearest depth (the entry depth of a proxy).
 /// - ask: a slot is seen if a fragment (exit depth of a proxy) is at the stored depth or behind it
 ///   (GEQUAL). In a pixel without a stored depth, no fragment is seen.
@@ -209,9 +209,9 @@ class Canvas {
   /// pass is known to have run (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
   /// Returns the depth (px) of `draws` in each pixel of the window: the nearest entry (store) or
-  /// the farthest exit (ask). NaN: no fragment. Returns height rows of width values. If mapped
-  /// depths are equal, any of their fragments may be taken. Proxies only. For tests of lemmas and
-  /// for pictures.
+  /// the farthest exit (ask). NaN: no fragment. Returns height rows of width values. If several
+  /// fragments have the same mapped depth, any of their depths may be returned. Proxies only. For
+  /// tests of lemmas and for pictures.
   virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
     throw std::logic_error("this canvas offers no samples");
   }
@@ -238,21 +238,21 @@ inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) 
   // bits of fixed point.
   return 0x1p-24 / depth_scale(window);
 }
-/// Returns a bound, in steps of 2^-24, for the difference between a depth read from a buffer and
-/// the exact 0.5 + z * scale, in any rounding mode. The product is at most 1/4 and errs by 2^-25.
-/// The sum is below 1 and errs by 2^-24. A buffer of 24 bits adds an error of 1 / (2^24 - 1) when
-/// it stores a depth, and of 2^-24 when the depth is read back as a float.
+/// Returns a bound, in units of 2^-24, for the difference between a depth read from a buffer and
+/// the exact 0.5 + z * scale, in any rounding mode. The product is at most 1/4 and errs by at most
+/// 2^-25. The sum is below 1 and errs by at most 2^-24. A buffer of 24 bits adds at most
+/// 1 / (2^24 - 1) when it stores a depth, and 2^-24 when the depth is read back as a float.
 inline double depth_rounding(int depth_bits) {
   return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
-/// A GL canvas tests a proxy this far behind the mapped depth of its exit: four steps of 2^-24.
-/// docs/budget.md, "Two programs", derives this slack; farcull_proofs (depth.behind) proves it. One
-/// program stores depths and another program tests them. The two may round the depth map in
-/// different directions, and may convert a depth to different 24-bit neighbours. With this slack a
-/// proxy with entry <= exit is still seen. 3/4 plus the slack is below 1, the value of an empty
-/// pixel. The canvas's own items have fixed depths and need no slack. The native canvas needs no
-/// slack either: one function rounds all depths to nearest.
+/// Slack of visibility tests on GL, four units of 2^-24: a proxy is tested this far behind the
+/// mapped depth of its exit. docs/budget.md, "Two programs", derives the slack; farcull_proofs
+/// (depth.behind) proves it. One program stores depths and another program tests them. The two
+/// programs may round the depth map in different directions, and may convert a depth to different
+/// 24-bit neighbours. With the slack, a proxy with entry <= exit is still seen. 3/4 plus the slack
+/// is below 1, the value of an empty pixel. The canvas's own items have fixed depths and need no
+/// slack. The native canvas needs none, because one function rounds all its depths to nearest.
 constexpr float kAskedBehind = 4 * 0x1p-24f;
 
 // ---- questions to a kernel and its answers, wherever it runs: on a device or on the CPU.

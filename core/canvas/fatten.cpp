@@ -1,4 +1,4 @@
-// Clips triangles to the window and fattens them, in parallel. Joins the drawables in order.
+// Clips triangles to the window and fattens them, in parallel. Keeps the order of the triangles.
 #include "core/canvas/fatten.h"
 
 #include <algorithm>

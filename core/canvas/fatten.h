@@ -1,5 +1,5 @@
 // Turns each triangle of a scene into the elements that a canvas draws in one view. A Fattener
-// holds functions, so core/ does not need the code of offsets, and can run CULLIDE alone.
+// holds functions, so that core/ can run CULLIDE without the code of offsets.
 #pragma once
 
 #include <functional>

@@ -11,9 +11,9 @@
 namespace farcull {
 
 /// The levels between objects and triangles. A cluster has up to `size` triangles of one owner, in
-/// the order of a space-filling curve. One query asks all triangles of a cluster that are not
+/// the order of a space-filling curve. One query tests all triangles of a cluster that are not
 /// culled yet. Each element of `sizes` is a level, in this order. These levels run only on the
-/// first visit of a view. They change no fixed point.
+/// first visit of a view. They do not change the fixed point of the rounds.
 struct Clusters {
   std::vector<std::uint32_t> sizes;  // triangles per cluster, each 2 or more
   Reason reason = Reason::none;      // the reason in the trace; none: no entry in the trace

@@ -1,5 +1,5 @@
-// The schedule: a round visits views, a visit runs levels, a level runs two passes. Culling holds
-// the state of one run; cull_by() puts its steps in order.
+// The schedule: a round visits views, a visit runs levels, a level runs two passes. Class Culling
+// holds the state of a run and defines the steps; cull_by() calls the steps in order.
 #include "core/cull/cull.h"
 
 #include <algorithm>
@@ -44,8 +44,8 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
 // A view of the run, and the state after its last visit.
 struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // stored_version() when the first and the second pass at triangle level last ran in this view.
-  // While this version stays the same, the stored set is unchanged.
+  // The stored_version() of the first and of the second pass at triangle level, when that pass last
+  // ran in this view. While stored_version() is the same, the stored set is unchanged.
   std::uint64_t stored[2] = {0, 0};
   PassCost plain;  // cost of plain CULLIDE's two passes at triangle level on the live triangles
 };
@@ -201,7 +201,7 @@ class Culling {
   }
 
   // True if another round follows. A round that changed nothing is the last. If this round changed
-  // something and no round follows, adds a stage with the reason.
+  // something and no round follows, adds a stage that gives the reason.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
@@ -219,7 +219,7 @@ class Culling {
     return false;
   }
 
-  // True if the next visit is left out. Then adds a stage with the reason.
+  // True if this visit is left out. Adds a stage with the reason, if no stage gives it yet.
   bool leaves_out(std::size_t view) {
     ViewState& place = places_[view];
     view_ = settings_.views[view].name;
@@ -352,10 +352,10 @@ class Culling {
     return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
   }
 
-  // Returns a version of the set that the pass for `bit` stores. The set depends on the other bit.
+  // Returns a number that changes if the set changes that the pass for `bit` stores.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // True if the pass has to run. A pass is left out only if bits are kept across views and its
-  // stored set is unchanged.
+  // True if the pass has to run. A pass is left out only if bits are kept across views and the set
+  // that it stores is unchanged since it last ran in this view.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -447,8 +447,8 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0;
-  std::uint64_t live_before_ = 0;  // live triangles before the visit; for ClearRule::all, the round
-  CullState start_;                // for ClearRule::all: the state when the round began
+  std::uint64_t live_before_ = 0;     // live triangles before the visit (ClearRule::all: the round)
+  CullState start_;                   // for ClearRule::all: the state when the round began
   std::vector<std::uint8_t> agreed_;  // for ClearRule::all: bits that every visit of the round set
   bool done_ = false;                 // few triangles are left, or the last view culled little
   bool visited_ = false;              // a view was visited

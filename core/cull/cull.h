@@ -22,8 +22,8 @@
 // Proved (docs/reliability.md) and tested: after every common step of the schedule, the bits of
 // Quick-CULLIDE contain those of plain CULLIDE, and Quick-CULLIDE has drawn and asked no more. So
 // when plain CULLIDE reaches its fixed point, Quick-CULLIDE keeps no more triangles and has used no
-// more queries and draws. Quick-CULLIDE may go on from there, because it joins bits of different
-// views. Then it may cull more, and its total work may exceed that of plain CULLIDE
+// more queries and draws. Quick-CULLIDE may then continue, because it joins bits of different
+// views. In that case it may cull more, and its total work may exceed that of plain CULLIDE
 // (tests/core/cull/cull_quick_test.cpp, docs/model.md).
 //
 // With a fattener that has the guarantee, F(t) means that triangle t meets no triangle of an
@@ -49,8 +49,8 @@
 
 namespace farcull {
 
-/// The radius of the ball: the published radius, or the budget radius of each view times a factor.
-/// A factor of at least 1 gives the guarantee.
+/// The radius of the ball that fattens triangles: the published radius, or each view's budget
+/// radius times a factor. A factor of at least 1 gives the guarantee.
 struct RadiusRule {
   bool published = false;
   double factor = 1;
@@ -68,8 +68,8 @@ struct CullStep {
 };
 
 /// How many views must find a triangle fully visible before it is culled. any: one view (CULLIDE).
-/// all: every view, each with the triangles that were left when the round began. With `all`,
-/// nothing is culled if a view cannot be drawn or if there are no views.
+/// all: every view of a round; each view begins with the triangles that were live before the round.
+/// With `all`, nothing is culled if a view cannot be drawn or if there are no views.
 enum class ClearRule { any, all };
 
 struct CullSettings {
@@ -96,8 +96,8 @@ struct CullSettings {
   /// The object level runs only if at least this many objects take part; 0: always;
   /// kNoObjectLevel: never.
   std::uint32_t least_objects = 0;
-  /// For a value w > 0, a view or round follows only if the last view (with ClearRule::all, the
-  /// last round) culled at least one w-th of the live triangles. 0: what it culled does not matter.
+  /// For a value w > 0, a view follows only if the last view (with ClearRule::all, a round only if
+  /// the last round) culled at least 1/w of the live triangles. 0: no such rule.
   std::uint32_t worth_a_view = 0;
   /// Bits at the start, per triangle of the scene, as CullResult::bits; empty: no bits. Plain
   /// CULLIDE uses them only to know which triangles are culled.
@@ -137,8 +137,8 @@ struct CullResult {
 /// - the object level of few objects (`least_objects`), and all steps after a view that culled
 ///   little (`worth_a_view`); these two change which bits are set, but no bit becomes wrong
 /// Throws Error if the resolution is beyond the canvas's limit, or if a pass is not known to have
-/// run. Throws std::logic_error if settings.bits or settings.owners has another length than the
-/// scene, or with `objects_alone` if objects are not the owners.
+/// run. Throws std::logic_error if the length of settings.bits or settings.owners does not fit the
+/// scene, or if `objects_alone` is set and objects are not the owners.
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 

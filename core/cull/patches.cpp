@@ -13,7 +13,7 @@ namespace farcull {
 namespace {
 
 // Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
-// and drawing keeps those. Larger patches leave more pairs to boxes. If boxes separate triangles
+// which drawing keeps. Larger patches leave more pairs to boxes. If boxes separate triangles
 // poorly, a sixteenth of the object leaves the fewest candidates. Below kLeastPatch, nearly all
 // triangles are at borders. Above kMostPatch, too many pairs of a patch may be left to test.
 constexpr std::uint32_t kPatches = 16;

@@ -17,7 +17,7 @@ struct Patches {
   std::uint32_t count = 0;           // number of patches of all marked objects
   bool cut = false;                  // some marked object has more than one patch
   std::vector<std::uint32_t> owner;  // per triangle of the scene: its patch in an object that is
-                                     // marked `self`, else its object. Ascending with the objects;
+                                     // marked `self`, else its object. Owners ascend with objects;
                                      // no owner has triangles of two objects.
 };
 
@@ -50,7 +50,7 @@ struct PairsToDraw {
   // All others: pairs with one owner, and pairs with a common vertex, which no view can separate.
   std::vector<TrianglePair> other;
 };
-/// owner: per triangle of the scene; see CullSettings::owners.
+/// Divides the pairs. owner: per triangle of the scene; see CullSettings::owners.
 PairsToDraw split_pairs(const Scene& scene, std::span<const TrianglePair> pairs,
                         std::span<const std::uint32_t> owner);
 

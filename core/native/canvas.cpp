@@ -1,5 +1,5 @@
-// begin() finds the pixels of each element. A pass divides the rows of the window so that all
-// threads draw about the same number of elements.
+// begin() finds the pixels that each element may cover. draw() divides the rows of the window so
+// that all threads draw about the same number of elements.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -55,8 +55,8 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
   const std::size_t count = drawables.elements(), unknown = waiting ? 0 : count;
   ranges_.resize(proxies ? 0 : count);
   outlines_.resize(proxies ? unknown : 0);
-  // reach (px): snapping moves a corner by at most 2^-9; a pixel's square extends 0.5 from its
-  // centre.
+  // reach (px): snapping displaces a corner by at most 2^-9, less than 2^-8. The square of a pixel
+  // extends 0.5 px from its centre.
   const double reach = options_.conservative ? 0x1p-8 + 0.5 : 0x1p-8;
   for_chunks(unknown, chunks_for(unknown, 4 * kLeast, options_.threads),
              [&](std::size_t, std::size_t from, std::size_t to) {

@@ -1,5 +1,5 @@
 // The canvas on the CPU, without device and driver. Every thread draws all steps of a pass, in
-// order, in its own rows of the window. So the bits do not depend on the number of threads. Each
+// order, in its own rows of the window. So the results do not depend on the number of threads. Each
 // operation is rounded once, so all instruction sets (lane_targets()) give the same bits, too.
 //
 // For proxies this canvas guarantees more than OpenGL (docs/budget.md, "The canvas on the CPU"):
@@ -18,9 +18,9 @@
 
 namespace farcull {
 
-/// The buffer has this many extra columns and rows. A block of pixels may begin inside the window
-/// and end outside, and is read and written as a whole. Without extra columns, the block would
-/// write to the next row, which may belong to another thread.
+/// The depth buffer has this many extra columns and rows. A block of pixels may begin inside the
+/// window and end outside; it is read and written as a whole. Without extra columns, such a block
+/// would include pixels of the next row, which may belong to another thread.
 inline constexpr int kNativeOverhang = 8;
 
 /// run: draws a pass. values: returns depths in px: the nearest depth of each pixel for
@@ -119,7 +119,7 @@ class NativeCanvas final : public Canvas {
 
 // Instruction sets that the native canvas can use on this processor (lanes.cpp).
 
-/// Returns the names of these instruction sets, the best first, such as "AVX3", "AVX2", "SSE4",
+/// Returns the names of usable instruction sets, the best first, such as "AVX3", "AVX2", "SSE4",
 /// "SCALAR" or "EMU128". The last name means plain C++.
 std::vector<std::string> lane_targets();
 std::string lane_target();

@@ -121,7 +121,7 @@ struct WideOutlines {
     Fit::depths(pixels.p, batch.radius, depths);
     out.nearest = depths[0];
     out.farthest = depths[1];
-    // Finds the farthest corner. Sets x and y to the pixel that contains it.
+    // Finds the farthest corner. Sets x and y to the pixel that contains this corner.
     dvec3 corner = pixels.p[0];
     for (int k = 1; k < 3; ++k) {
       const WideBool behind = pixels.p[k].z > corner.z;
@@ -137,8 +137,8 @@ struct WideOutlines {
                              out.x >= 0.0 && out.y >= 0.0 && out.x < half_x + half_x &&
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
-    // Rounding to double errs by 2^-53 of the value, and rounding to float by 2^-24. So out.depth
-    // is certainly less than the depth of the corner.
+    // Rounding errs by at most 2^-53 of the value in double, and 2^-24 in float. The subtracted
+    // term is larger, so out.depth is certainly less than the depth of the corner.
     out.depth = farcull::HWY_NAMESPACE::nearest(
         corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
     return out;
@@ -162,7 +162,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   HWY_ALIGN float depths[3][kWide];
   const WideLane* const pixel_of[6] = {&of.x0, &of.x1, &of.y0, &of.y1, &of.x, &of.y};
   for (int i = 0; i < 6; ++i) {
-    // For a triangle outside the region, numbers may not fit into 16 bits. They become 0.
+    // Numbers that do not fit into 16 bits become 0. Such numbers occur only outside the region.
     const WideLane a = *pixel_of[i];
     const WideLane fitting = select(a >= 0.0 && a <= WideLane(65535.0), a, 0.0);
     hn::Store(hn::DemoteTo(whole, fitting.v), whole, pixels[i]);

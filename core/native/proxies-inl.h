@@ -182,7 +182,7 @@ struct ProxyEdges {
   }
   /// Tests kLanes adjacent blocks. True: the block may have a covered pixel. cx, cy: the lower left
   /// pixel centre of the first block. The test enlarges each block by a pixel on each side.
-  /// Rounding errors are far smaller, so no block with a covered pixel is rejected.
+  /// Rounding errors are far smaller than a pixel, so no block with a covered pixel is rejected.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();
     const Lane right = left + Lane(static_cast<Plain>(kBlockWidth + 1));
@@ -214,8 +214,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
-  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). If it has no
-  // effect in a pixel, no fragment has an effect there, since the depth map is monotone.
+  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). Where a fragment
+  // at this depth would have no effect, no fragment has one, since the depth map is monotone.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const Plain half_width = 0.5f * static_cast<Plain>(job.width);

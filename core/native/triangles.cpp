@@ -1,6 +1,6 @@
 // Draws raw triangles. Snapped corners and edge functions are integers, which doubles hold exactly.
 // So comparing a pixel centre with an edge is exact. Comparing a pixel's square with a triangle is
-// exact, too: if they are disjoint, an axis of the pixel or the normal of an edge separates them.
+// exact, too: if square and triangle are disjoint, an axis or an edge's normal separates them.
 #include "core/native/canvas.h"
 
 #include <algorithm>

@@ -35,9 +35,9 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// The nearest of some pairs of triangles, decided exactly. If several pairs are nearest, it is the
-/// first of them. reach and start prove that other pairs are no nearer. A triangle s of the first
-/// object and a triangle t of the second are at least as far apart as the settled pair if
+/// The nearest of some pairs of triangles, decided exactly; the first of them if several are
+/// nearest. The functions reach and start can prove that another pair is no nearer. A triangle s of
+/// the first object and a triangle t of the second are at least as far apart as the settled pair if
 /// reach(s) <= start(t), and farther apart if reach(s) < start(t).
 struct SettledPair {
   TrianglePair pair;
@@ -118,7 +118,7 @@ class ProximityTrees {
   /// slightly farther apart. The triangles belong to two objects, or they are no neighbours and
   /// belong to one object marked `self`. Sorted, distinct. Throws std::logic_error if `within` is
   /// negative, infinite or NaN. Throws Error, which names `most`, if there are more than `most` +
-  /// `spare` pairs. Memory: some tens of bytes per pair, plus those of some thousands of pairs.
+  /// `spare` pairs. Memory: some tens of bytes per pair, and for some thousands of further pairs.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {},
                                          std::size_t spare = 0) const;

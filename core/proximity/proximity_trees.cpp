@@ -1,7 +1,7 @@
-// Each question is a search (core/proximity/scene_trees.h). Searches run in parallel; a long search
-// is divided. nearest_objects() compares an object with the others in the order of the gaps of
-// their parts, until a gap is above the k-th least upper bound so far. pairs_within() compares an
-// object with the objects that have higher numbers.
+// Answers each question by a search (core/proximity/scene_trees.h). Searches run in parallel; a
+// long search is divided. nearest_objects() compares an object with other objects in the order of
+// the gaps between its parts and theirs, until a gap is above the k-th least upper bound so far.
+// pairs_within() compares an object with the objects that have higher numbers.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -94,7 +94,7 @@ void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
   }
 }
 
-// Returns the k-th least upper bound. At least k other objects are at most that far away.
+// Returns the k-th least upper bound of the searches. At least k objects are that near.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
   std::vector<double> upper;
@@ -231,8 +231,8 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
       std::ranges::pop_heap(least);
       least.pop_back();
     }
-    // Others with a gap of 0 come in ascending order. Once k others meet this object, later others
-    // are no nearer, and have higher numbers.
+    // Other objects with a gap of 0 come in ascending order. Once k objects meet this object, later
+    // objects are no nearer, and have higher numbers.
     meeting += found.upper == 0;
     out.push_back(std::move(found));
     if (!all && meeting == k) break;
@@ -403,8 +403,8 @@ std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double with
     std::ranges::move(found[o], std::back_inserter(founds));
   }
   // If two objects have found each other, the answer with the larger limit is kept. An answer has
-  // all nearest pairs if their distance is at most its limit. At least one of the two answers has
-  // such a limit, so the answer with the larger limit does.
+  // all nearest pairs if the least distance is at most the answer's limit. This holds for one of
+  // the two answers at least, so it holds for the answer with the larger limit.
   std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;

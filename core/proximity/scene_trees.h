@@ -38,28 +38,28 @@ namespace farcull::near {
 // Gaps along a direction d, any vector with components in [-16, 16]. Points are taken relative to
 // an origin: x = fl(point - origin) errs by u |x|. A dot product d.x has three products and two
 // sums. With the error of x, it errs by less than 5 u |d|.|x| (absolute values per axis). The
-// difference of two dot products adds a rounding of 2 u |d|.|x|. With X the largest |x| per axis,
-// that is 12 u |d|.X in all. kGap is 16 u, which also covers the roundings of kGap |d|.X. The
-// distance is at least the gap divided by the length of d.
+// difference of two dot products adds a rounding of 2 u |d|.|x|. If X is the largest |x| per axis,
+// the gap errs by at most 12 u |d|.X. kGap is 16 u, which also covers the roundings of kGap |d|.X.
+// The distance is at least the gap divided by the length of d.
 //
 // Points. The points p and q are weighted sums of the corners of one triangle each, relative to a
 // corner of the first triangle. R is the largest |coordinate| of these corners. The computed
 // weights are in [0, 1] and sum to 1 up to 4 u. Per axis, p differs from a point of its triangle by
 // at most u R (1 + 4 u) (differences) + 3 u R (products and sums) + 4 u R (weights, compared with
-// weights that sum to 1) < 9 u R. The same holds for q. Their difference has one rounding of 2 u R,
-// so it errs by less than 20.1 u R per axis, or 35 u R in length. The computed length is below 4 R
-// and errs by less than 3 u of itself, and two sums follow: 20 u R. That is 55 u R in all; kPoint
-// is 64 u.
+// weights that sum to 1) < 9 u R. The same holds for q. The difference p - q has one rounding of 2
+// u R, so it errs by less than 20.1 u R per axis, or 35 u R in length. The computed length is below
+// 4 R and errs by less than 3 u of itself. With two sums that follow, this adds 20 u R. In all, the
+// error is at most 55 u R; kPoint is 64 u.
 //
 // Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on
 // opposite sides of its plane, and the edge passes the triangle's three sides in the same sense.
 // The signs of five determinants of differences of points decide both. A difference errs by u of
-// itself. So each of the six products of three is within (1 + u)^8 of the exact one, with two sums.
-// A determinant errs by less than 8.1 u of the sum of the products' magnitudes. kDeterminant is 16
-// u, which also covers the roundings of that sum. If all signs are certain, the triangles share a
-// point, and 0 is an upper bound.
+// itself. So each of the six products of three differences is within a factor (1 + u)^8 of the
+// exact product, sums included. A determinant errs by less than 8.1 u of the sum of the products'
+// magnitudes. kDeterminant is 16 u, which also covers the roundings of that sum. If all signs are
+// certain, the triangles share a point, and 0 is an upper bound of their distance.
 //
-// Underflow. A product errs by at most 2^-1075. That is lost in the rounding of a squared length
+// Underflow. A product errs by at most 2^-1075. That is far below the rounding of a squared length
 // above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives no
 // direction. All other losses by underflow are far below kAbsolute.
 

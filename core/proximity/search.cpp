@@ -262,10 +262,10 @@ class Searcher {
     return out;
   }
 
-  // Drops pairs that are farther apart than the bound along a direction of one triangle: its
-  // normal, or a normal of an edge in its plane. Boxes along the axes separate slivers and large
-  // triangles poorly. A direction is tried for all pairs of a triangle at once, which takes less
-  // time than bounding two pairs.
+  // Drops pairs of triangles whose gap along a direction of one triangle is above the bound. The
+  // directions are its normal, and the normals of its edges in its plane. Boxes along the axes
+  // separate slivers and large triangles poorly. A direction is tried for all pairs of a triangle
+  // at once, which takes less time than bounding two pairs.
   HWY_INLINE void drop_apart_along_normals(const BlockCorners& a, const BlockCorners& b,
                                            std::array<std::uint32_t, kWide>& near) const {
     std::uint32_t once = 0, twice = 0;  // columns with at least one and with at least two pairs
@@ -283,8 +283,8 @@ class Searcher {
     }
   }
 
-  // Clears the bits of triangles of `leaf` that are farther from triangle i of `own` than the bound
-  // along a direction of that triangle. Any direction gives a valid bound, so errors of a computed
+  // Clears the bits of triangles of `leaf` whose gap to triangle i of `own`, along a direction of
+  // triangle i, is above the bound. Any direction gives a valid bound, so errors of a computed
   // normal do no harm (core/proximity/scene_trees.h). Components are scaled to at most 16.
   HWY_INLINE std::uint32_t near_triangle(const BlockCorners& own, std::size_t i,
                                          const BlockCorners& leaf, std::uint32_t bits) const {
@@ -419,8 +419,8 @@ class Searcher {
     }
     if (best < kWide) {
       new_bound();
-      // Among many pairs at almost the same distance, rounding errors lower the bound a little.
-      // Such a change keeps the direction.
+      // If many pairs are at almost the same distance, rounding errors may lower the bound a
+      // little. Then the direction is kept.
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};

@@ -1,5 +1,5 @@
-// Puts pairs into buckets by their first triangle. In each bucket, sorts the second triangles, or
-// marks them as bits.
+// Puts pairs into buckets by their first triangle. Sorts each bucket by the second triangle, or
+// marks the second triangles as bits.
 #include "core/scene/pair_sort.h"
 
 #include <bit>
@@ -17,8 +17,8 @@ using Parts = std::span<const std::vector<TrianglePair>>;
 constexpr std::size_t kMarkFrom = 64;
 
 // Sorts pairs that have the same first triangle, moves the distinct pairs to the front, and returns
-// their number. Many pairs with a small range of indices are marked in `bits` instead. All words of
-// `bits` must be 0 before a call, and are 0 after it.
+// their number. If many second triangles lie in a small range, marks them in `bits` instead of
+// sorting. All words of `bits` must be 0 before a call, and are 0 after it.
 std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64_t>& bits) {
   if (pairs.size() >= kMarkFrom) {
     const auto [least, most] = std::ranges::minmax_element(pairs);
@@ -97,7 +97,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
   if (total == 0) return {};
   const std::uint64_t span = most - least + 1;
   std::vector<TrianglePair> out;
-  // Counting needs positions of 32 bits. With few pairs in a large range of `a`, sorting is faster.
+  // Counting needs 32-bit positions. For few pairs in a large range of `a`, std::sort is faster.
   if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());

@@ -35,8 +35,8 @@ struct Box {
 inline Box intersection(const Box& a, const Box& b) {
   return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)};
 }
-/// True iff the closed boxes share a point. An empty box overlaps nothing. Exact, since doubles are
-/// only compared.
+/// True iff the closed boxes share a point. An empty box overlaps nothing. The answer is exact,
+/// since doubles are only compared.
 inline bool overlap(const Box& a, const Box& b) { return !intersection(a, b).is_empty(); }
 inline bool lies_within(const Box& inner, const Box& outer) {
   return (inner.lo.array() >= outer.lo.array() && inner.hi.array() <= outer.hi.array()).all();
@@ -68,7 +68,7 @@ struct FoldedFace {
 struct Scene {
   std::string name;
   std::vector<Vec3> vertices;  // finite
-  /// Each has three indices into `vertices`. Degenerate triangles are kept.
+  /// Each triangle is three indices into `vertices`. Degenerate triangles are kept.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> source_face;  // per triangle: its polygon in the file, counted from 0
   std::vector<Object> objects;
@@ -132,8 +132,8 @@ std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_
 /// Returns the object of each triangle.
 std::vector<std::uint32_t> owners(const Scene& scene);
 
-/// Returns 16 hex digits: FNV-1a over each object's triangle_count and `self`, and over the bits of
-/// the coordinates of all triangles, in order. Names and ignored pairs of objects have no
+/// Returns an FNV-1a hash, in 16 hex digits, of each object's triangle_count and `self`, and of the
+/// bits of the coordinates of all triangles, in order. Names and ignored pairs of objects have no
 /// influence.
 std::string scene_hash(const Scene& scene);
 
@@ -157,13 +157,13 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs,
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
 
-/// Throws Error if the scene ignores pairs of objects. who: names the work that needs all pairs.
+/// Throws Error if the scene ignores pairs of objects. who: the operation that needs all pairs.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// True for a pair of triangles whose objects are an ignored pair.
 class IgnoredObjects {
  public:
-  /// Parameters and errors as for remove_ignored(). The scene may be gone afterwards.
+  /// Parameters and errors are those of remove_ignored(). The scene need not outlive this object.
   IgnoredObjects(const Scene& scene, std::span<const ObjectPair> ignored);
   bool any() const { return !others_.empty(); }
   bool operator()(const TrianglePair& pair) const;
@@ -183,7 +183,7 @@ struct FrameChange {
 };
 
 /// Finds the corners that moved between two frames of the same triangles and objects. A class that
-/// keeps results of a frame also keeps the frame's number, frame(). It uses the results only if
+/// keeps results of a frame also keeps the frame's number, frame(). It may use the results only if
 /// follows(number) is true.
 class MovedCorners {
  public:
@@ -193,13 +193,13 @@ class MovedCorners {
   void update(const Scene& scene, const FrameChange* change = nullptr);
   /// True if the next update() compares nothing, because knowing what moved has saved no work.
   bool waits() const { return waits_ > 0; }
-  /// worth_while: true if knowing what moved saved work in this frame. Call at most once a frame.
-  /// Has no effect if it is not known what moved.
+  /// Records whether knowing what moved saved work in this frame. Call at most once a frame. Has no
+  /// effect if it is not known what moved.
   void notify(bool worth_while);
   /// Returns the number of the present frame, counted from 1.
   std::uint64_t frame() const { return frame_; }
-  /// True if this is the frame after `frame` and has the same triangles and objects. Then the
-  /// functions below describe what moved since that frame.
+  /// True if the present frame is the one after `frame` and has the same triangles and objects.
+  /// Then the functions below describe what moved since `frame`.
   bool follows(std::uint64_t frame) const { return known_ && frame_ == frame + 1; }
   /// True if some triangle has a corner that moved.
   bool any() const { return !triangles_.empty(); }
@@ -229,11 +229,11 @@ class MovedCorners {
   std::vector<std::uint32_t> triangles_;      // triangles with a corner that moved
 };
 
-/// Takes an evenly spaced sample of the pairs. True if no triangle moved in at least half of the
-/// sampled pairs. Without pairs, true if nothing moved.
+/// True if neither triangle moved in at least half of the pairs of an evenly spaced sample. Without
+/// pairs, true if nothing moved.
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
-/// True if the determinant of the matrix exceeds its own rounding errors. r: row by row, finite.
+/// True if the determinant is larger than its rounding errors. r: the matrix, row by row, finite.
 ///
 /// Each row is divided by its largest magnitude, which does not change the sign of the determinant.
 /// A term of the determinant then has at most 8 roundings, each by at most u = 2^-53: three

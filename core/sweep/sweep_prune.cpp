@@ -1,5 +1,5 @@
-// BoxSweep sweeps the objects. Triangles that may be in a candidate pair are then put into columns
-// across the sweep axis, in the order of the last call. Each column is sorted and swept.
+// Finds pairs of objects with BoxSweep. Puts triangles that may be in a candidate pair into columns
+// parallel to the sweep axis, in the order of the last call. Then sorts and sweeps each column.
 #include "core/sweep/sweep_prune.h"
 
 #include <algorithm>
@@ -151,7 +151,7 @@ SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes
   fill_columns(boxes);
   const std::uint64_t swaps = counts.swaps;
   const std::vector<TrianglePair> found = sweep_columns(counts);
-  // The columns begin in the order of order_. Many moves show that order_ is outdated.
+  // A column is filled in the order of order_. Many moves show that order_ is outdated.
   if (counts.swaps - swaps > items_.size()) {
     sort_order();
     ++counts.sorts;
@@ -226,8 +226,8 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
   return objects;
 }
 
-/// Chooses the axis of the sweep. Along this axis, boxes are shortest relative to the extent of all
-/// boxes. It changes only if another axis is clearly better, since a change loses the sorted order.
+/// Chooses the axis along which boxes are shortest relative to the extent of all boxes. The axis
+/// changes only if another is clearly better, since a change loses the sorted order.
 void SweepPrune::choose_columns(std::span<const Box> boxes) {
   constexpr double kBetter = 2;
   Box all = Box::empty();

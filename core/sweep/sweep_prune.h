@@ -4,12 +4,12 @@
 // Source: Cohen, Lin, Manocha, Ponamgi, I-COLLIDE: An Interactive and Exact Collision Detection
 // System for Large-Scale Environments (I3D 1995), section 4. The ends of all boxes along each axis
 // stay in a sorted list between frames. If little moved, insertion sort takes linear time. Where
-// the ends of two boxes change places, the boxes may begin or cease to overlap. Inside objects
-// I-COLLIDE follows features of convex bodies. farcull takes any triangles instead. The triangles
-// of the remaining objects are swept along one axis, in columns across the other two axes. Their
-// order along that axis is kept between frames.
+// the ends of two boxes change places, the boxes may begin or cease to overlap. For two objects
+// whose boxes overlap, I-COLLIDE tracks features of convex bodies. farcull accepts any triangles.
+// It sweeps the triangles of such objects along one axis, in columns that divide the other two
+// axes. The order of the triangles along that axis is kept between frames.
 //
-// Reliable: no pair of closed boxes that overlap is lost, since doubles are only compared. The kept
+// Reliable: the sweep loses no pair of overlapping boxes, since doubles are only compared. The kept
 // order affects the time and the counts of swaps and sorts, but no answer. Each call may get a
 // different scene.
 #pragma once

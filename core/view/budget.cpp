@@ -8,8 +8,8 @@
 namespace farcull {
 namespace {
 
-// GLSL does not define the rounding mode. So one operation errs by up to one unit in the last
-// place, 2^-23, and not only by 2^-24.
+// GLSL does not define the rounding mode. So the relative error of an operation is at most one unit
+// in the last place, 2^-23. A bound of 2^-24 would be too small.
 constexpr double kUnit = 0x1p-23;
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
@@ -27,8 +27,8 @@ std::array<BudgetTerm, 6> Budget::terms() const {
 double Budget::radius() const {
   double sum = 0;
   for (const BudgetTerm& term : terms()) sum += term.px;
-  // Six additions of rounded terms err by less than 2^-49 of the sum. The factor covers these
-  // errors, so that the result is strictly greater than the sum.
+  // Six additions of rounded terms err by less than 2^-49 of the sum. The factor covers this error,
+  // so that the result is strictly greater than the sum.
   return sum * (1 + 0x1p-40);
 }
 
@@ -36,17 +36,16 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   const double half = 0.5 * viewport;  // M, the largest |coordinate| relative to the centre
   Budget b;
   b.sampling = kSqrt2 / 2;
-  // Rounding a corner to the nearest float errs by at most kUnit / 2 of M. The computation in
-  // double before it errs by less. On the CPU, edges of a proxy are compared with pixel centres in
-  // floats, which adds 3.01 kUnit of M (docs/budget.md, "The canvas on the CPU").
+  // Rounding a coordinate to the nearest float errs by at most kUnit / 2 of M. Its computation in
+  // double errs by less. On the CPU, edges of a proxy are compared with pixel centres in floats,
+  // which adds at most 3.01 kUnit of M (docs/budget.md, "The canvas on the CPU").
   b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
-  // A coordinate errs by e = kMaxDoubleError, and a point in the image plane by sqrt(2) e. The
-  // largest distance from a pixel's centre is s = sqrt(2)/2. The depth's error adds a second-order
-  // term:
+  // Computing in double displaces a point by at most e = kMaxDoubleError along each axis. Its
+  // distance from the pixel's centre, at most s = sqrt(2)/2 before, is then at most
   // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
-  // docs/budget.md, "vertex". Errors in kUnit of M: product with 2/viewport (1), division by w
-  // (2.5), and product with viewport/2 (1). Error in kUnit of M + viewport/2: sum with the
+  // docs/budget.md, "vertex". Errors in units of kUnit * M: product with 2/viewport (1), division
+  // by w (2.5), and product with viewport/2 (1). In units of kUnit * (M + viewport/2): sum with the
   // viewport's centre (1). The factor 1 + 4 kUnit covers the products of these errors.
   b.vertex =
       limits.exact_samples ? 0 : kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);

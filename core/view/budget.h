@@ -15,8 +15,8 @@ struct BudgetTerm {
   double px;
 };
 
-/// Each term bounds the length of a displacement in px. If it is derived from bounds of
-/// coordinates, it includes the square root of the dimension.
+/// Each term bounds the length of a displacement in px. A term that is derived from bounds of
+/// single coordinates includes the square root of the dimension.
 struct Budget {
   double sampling = 0;  // largest distance of a point of a pixel from the pixel's centre
   double input = 0;     // rounding of proxy corners from double to float32
@@ -36,7 +36,7 @@ Budget budget_for(const RasterLimits& limits, int viewport);
 
 /// Returns the radius in px that was published (Govindaraju, Lin, Manocha 2004, section 4). It is
 /// half the diagonal of a pixel, 1/2 sqrt(dx^2 + dy^2 + dz^2), with dx = dy = 1 px. dz is the
-/// smallest step of the depth buffer in px. This radius fails on real rasterizers.
+/// smallest step of the depth buffer in px. This radius is too small for real rasterizers.
 double published_radius(double depth_step);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
 // A box join finds the partners of each object: the objects whose boxes overlap its box. A triangle
-// takes part if its box overlaps the box of a partner of its object.
+// is kept if its box overlaps the box of a partner of its own object.
 #include "core/view/regions.h"
 
 #include <algorithm>

@@ -20,15 +20,15 @@ struct Regions {
 /// If at most this many triangles remain, further views and finer offsets are left out. Exact tests
 /// of these triangles take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// With fewer objects, no object is tested as a whole. Such a test draws all triangles twice. Among
-/// few overlapping objects, one object seldom hides all of another.
+/// With fewer objects, no object is tested as a whole. A test of whole objects draws all triangles
+/// twice. Among few overlapping objects, one object seldom hides all of another.
 constexpr std::uint32_t kFewObjects = 16;
-/// A number of objects that no scene has: no object is tested as a whole. Without occlusion
-/// queries, asking for each triangle costs no more than asking for their object.
+/// More objects than any scene has, so no object is tested as a whole. Without occlusion queries,
+/// testing each triangle of an object costs no more than testing the object.
 constexpr std::uint32_t kNoObjectLevel = UINT32_MAX;
-/// A further view follows if the last view culled at least 1/kWorthAView of its triangles. On
-/// two CPU cores, a view takes a third of the time of exact tests of its triangles
-/// (docs/methods.md, "What a run leaves out").
+/// A further view follows only if the last view culled at least 1/kWorthAView of the triangles that
+/// were live before it. On two CPU cores, a view takes a third of the time of exact tests of its
+/// triangles (docs/methods.md, "What a run leaves out").
 constexpr std::uint32_t kWorthAView = 3;
 
 struct RegionRules {
@@ -43,8 +43,8 @@ struct RegionRules {
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
 /// Returns the regions for these pairs. triangles: the triangles of the pairs. places: one for each
-/// object that owns the first triangle of a pair. A place contains the intersections of the boxes
-/// of all pairs of its object. So every common point of a pair is in a place.
+/// object that owns the first triangle of a pair. For each such pair, the object's place contains
+/// the intersection of the two triangles' boxes. So every common point of a pair is in a place.
 Regions regions_of(const Scene& scene, std::span<const TrianglePair> pairs);
 
 }  // namespace farcull

@@ -206,7 +206,7 @@ bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign
     if (out.count + a_inside + (a_inside != b_inside) > room) return false;
     if (a_inside) out.corners[out.count++] = a;
     if (a_inside != b_inside) {
-      // Interpolates from the inner end: two triangles with a common edge get the same point.
+      // Interpolates from the inner end, so that triangles with a common edge get the same point.
       const Vec3& from = a_inside ? a : b;
       const Vec3& to = a_inside ? b : a;
       const double t = (plane - from[axis]) / (to[axis] - from[axis]);
@@ -251,9 +251,9 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
     }
     if (patch.count == 0) break;
   }
-  // Each cut displaces its new corners by at most kCutRounding * largest along each axis. The three
-  // roundings of t are multiplied by |to - from| <= 2 * largest. The difference, the product and
-  // the sum are then rounded once each (docs/budget.md, "Clipping and the fan").
+  // Each cut displaces its new corners by at most kCutRounding * largest along each axis. t has
+  // three rounding errors, which are multiplied by |to - from| <= 2 * largest. The difference, the
+  // product and the sum are then rounded once each (docs/budget.md, "Clipping and the fan").
   patch.error += patch.cuts * kCutRounding * largest;
   return patch;
 }

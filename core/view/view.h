@@ -115,8 +115,8 @@ struct Patch {
   std::span<const Vec3> points() const { return {corners.data(), static_cast<std::size_t>(count)}; }
 };
 
-/// Returns the image of the world triangle `corners`, clipped to window.lo .. window.hi. Check
-/// drawable() first: if false, count == 0 does not prove that the triangle is outside.
+/// Returns the image of the world triangle `corners`, clipped to window.lo .. window.hi. If the
+/// patch is not drawable(), count == 0 does not prove that the triangle is outside.
 Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners);
 
 }  // namespace farcull

@@ -1,6 +1,6 @@
-// Processes blocks of cells level by level. Each block has a list of the triangles that can matter
-// to its cells. The block's parts, on the next level, get a shorter list. A level reads only
-// results of the levels above, so the answer does not depend on the number of threads.
+// Divides the grid into blocks of cells, level by level. Each block lists the triangles that can
+// matter to its cells. Its parts form the next level and have shorter lists. A level reads only
+// results of earlier levels, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace farcull::voronoi {
 inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// The cells from .. to - 1 along each axis. The block's triangles are level.triangles[first] and
-// the next count - 1.
+// A block has the cells from .. to - 1 along each axis. Its triangles are the `count` elements of
+// Level::triangles from index `first` on.
 struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
@@ -135,9 +135,9 @@ inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Processes the blocks of the grid level by level. For each block of a level, calls form.look(),
-/// which adds blocks to the next level. Then calls form.add() with the Form::Found of each chunk of
-/// the level, in order.
+/// Processes the blocks of the grid level by level. Calls form.look() for each block of a level, in
+/// chunks that run in parallel; look() adds blocks to the next level. Then calls form.add() with
+/// the Form::Found of each chunk, in the order of the chunks.
 template <class Form>
 void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
              const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {

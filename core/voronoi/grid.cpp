@@ -30,7 +30,7 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
       std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
   if (!(largest > 0)) return out;
   // 2^exponent scales the largest |coordinate| into [1, 2). A coordinate that becomes subnormal
-  // errs by less than 2^-1074, and a cell is at least 2^-52 / kVoronoiLargest.
+  // errs by less than 2^-1074, far less than a cell, which is at least 2^-52 / kVoronoiLargest.
   out.exponent = -std::ilogb(largest);
   Vec3 extent;
   for (int k = 0; k < 3; ++k) {

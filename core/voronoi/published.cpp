@@ -1,5 +1,5 @@
-// The published form: each cell names its two nearest objects. A block is left out if other cells
-// have already named all pairs of objects that its cells may name.
+// Computes the published neighbours. Each cell names the two objects nearest to its centre. A block
+// of cells is left out if other cells have already named all pairs that its cells may name.
 #include <algorithm>
 #include <cmath>
 
@@ -16,9 +16,9 @@ namespace {
 // Two upper bounds of |c - v|^2 - |c - T|^2 hold for all c. If one bound is below 0, v is nearer
 // than T to every c.
 //
-// Box: if [lo, hi] is the box of T, the difference is at most the sum over the axes of
-// (c - v)^2 - |c - [lo, hi]|^2. A term is convex in c: its slope is 2 (lo - v) up to lo, grows to
-// 2 (hi - v) at hi, and stays. So its largest value is at an end of the block (Emrich, Kriegel,
+// Box: if [lo, hi] is the box of T, the difference is at most the sum over the axes of (c - v)^2 -
+// |c - [lo, hi]|^2. Each term is convex in c: its slope is 2 (lo - v) below lo, grows to 2 (hi - v)
+// at hi, and is constant above hi. So its largest value is at an end of the block (Emrich, Kriegel,
 // Kroger, Renz, Zufle: Boosting Spatial Pruning: On Optimal Pruning of MBRs, SIGMOD 2010).
 //
 // Corners: for a point p of T with weights l_i of its corners p_i,
@@ -86,10 +86,10 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
   return out;
 }
 
-// True only if every point of the block is nearer to `corner`, nearest_corner() of an object, than
-// to all triangles `ids` of another object. That holds for exact and for computed distances. The
-// margin bounds the error of a difference of squares: it is the sum of the two distances, each at
-// most 1.74 N, times the sum of their errors. The arithmetic in double errs by far less.
+// Returns true only if every point of the block is nearer to `corner` than to all triangles `ids`
+// of another object, in exact and in computed distances. corner: nearest_corner() of an object.
+// `margin` bounds the error of a difference of two squared distances. It is the distances' sum,
+// each at most 1.74 N, times that of their errors. Arithmetic in double errs by far less.
 bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
                const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
   const double margin =
@@ -110,7 +110,7 @@ class Published {
 
   Found nothing() const { return {}; }
 
-  // Computes the distances from the centre of one cell. They bound the distances from other cells.
+  // Computes distances from the centre of one cell. They bound those from the block's other cells.
   void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
             Found& found, Level& below) const {
     GridPoint centre;
@@ -167,9 +167,9 @@ class Published {
     std::size_t by = 0;          // index of one dominator
   };
 
-  // Returns the objects that may be among the two nearest to a cell of the block, ascending. Empty
-  // if all pairs of objects that a cell may name have already been named. slack: bounds how much
-  // the difference of two distances changes from the central cell to another cell.
+  // Returns, ascending, the objects that may be among the two nearest to a cell of the block.
+  // Returns none if all pairs that these cells may name have been named. slack: how much the
+  // difference of two distances can change from the central cell to another cell.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();

@@ -1,8 +1,7 @@
-// The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V9). Two rules cull the other triangles. First:
-// from a block's centre, an end is farther than the nearest triangle by at most the block's
-// diagonal. Second: an end is half the segment's length from the middle. Each point of space gives
-// an upper bound of this length.
+// Computes the reliable neighbours (docs/voronoi.md, theorem V9). A cell keeps a triangle if it can
+// hold an end of a shortest segment whose middle lies in the cell. With H half the diagonal of a
+// block of cells, filtered() drops a triangle in two cases: its distance from the block's centre is
+// more than 2 H above that of the nearest triangle, or more than H plus half the segment's length.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -53,7 +52,7 @@ class Reliable {
     cells_.append(found.cells);
   }
 
-  // Returns the pairs that remain in the cells. Call it when all upper bounds are known.
+  // Returns the pairs of triangles that the cells keep. Precondition: all upper bounds are known.
   std::vector<TrianglePair> pairs(const VoronoiOptions& options, VoronoiCounts& counts) const {
     const std::size_t lists = chunks_for(cells_.blocks.size(), 16, options.threads);
     PairPool pool(lists, kPairsHeld);
@@ -98,7 +97,8 @@ class Reliable {
     return block.is_cell() ? half * widening_ : half;
   }
 
-  // The distance of two objects is at most the sum of their distances from the point.
+  // Lowers upper bounds. The distance of two objects is at most the sum of their distances from the
+  // block's centre.
   static void note_upper(const Distances& distances, std::vector<float>& upper) {
     const auto least = distances.least_upper<2>();
     for (const Near& near : distances.objects()) {
@@ -110,7 +110,7 @@ class Reliable {
   // An end of the object's shortest segment is at most this far from the block's centre.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // Returns the triangles that may hold an end. Returns none if all of them belong to one object.
+  // Returns the triangles that may hold an end of a segment; none if all are of one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;

@@ -36,24 +36,24 @@ namespace farcull {
 // Errors of the computed distance, with u = 2^-24. The coordinates of the point c and of the
 // triangle with corners q_i are in [0, N]. All roundings are to nearest.
 //
-// Upper bound. The nearest point is sought on each edge and in the face. On an edge it is w = q + t
-// (q' - q) with a float t in [0, 1], whatever the error of t. In the face it is q0 + s (q1 - q0) +
-// t (q2 - q0) with floats s, t >= 0 and s + t <= 1 (up to 1 + u, if the float sum is rounded down
-// to 1). With exact arithmetic, this t (and s) gives a point P of the triangle. Along each axis, w
-// differs from P by at most uN for each difference, product and sum, and by the factor 1 + u.
+// Upper bound. The point w of the triangle nearest to c is sought on each edge and in the face. On
+// an edge from q to q', w = q + t (q' - q) with a float t in [0, 1]. In the face, w = q0 + s (q1 -
+// q0) + t (q2 - q0) with floats s, t >= 0 and s + t <= 1 (up to 1 + u, if the float sum is rounded
+// down to 1). With exact arithmetic, this t (and s) gives a point P of the triangle. Per axis,
+// w differs from P by at most uN for each difference, product and sum, and by the factor 1 + u.
 // Computing n = c - w adds uN, so n differs from c - P by at most 6.2 uN per axis, or 10.8 uN in
-// length. The length of n, at most 1.7321 N, is computed with a relative error of at most 2.6 u:
-// 4.6 uN. Rounding a corner to float moves it by at most 1.01 uN per axis: 1.8 uN. So the exact
-// distance is at most the computed one + 17.2 uN.
+// length. The length of n is at most 1.7321 N. Its relative error is at most 2.6 u, which is 4.6
+// uN. Rounding a corner to float moves it by at most 1.01 uN per axis, or 1.8 uN in length. So the
+// exact distance is at most the computed one + 17.2 uN.
 //
-// Lower bound. Along n, no point of the triangle is nearer to c than the nearest corner. So the
-// distance is at least the least of n . (c - q_i) / |n|. The computed product errs by 4.1 u of |n|
-// |c - q_i|, which is 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of the quotient,
-// which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN the sum is 15.5 uN. Products below the
-// normal floats err by 2^-149 each, far less than uN |n| if |n| is at least kShortest.
+// Lower bound. Along n, a corner of the triangle is the point nearest to c. So the distance is at
+// least the least n . (c - q_i) / |n|. The computed product errs by at most 4.1 u |n| |c - q_i|,
+// which is 7.2 uN |n|. Dividing by the computed length errs by 3.7 u of the quotient (at most 1.74
+// N), which is 6.5 uN. With 1.8 uN for the corners, the sum is 15.5 uN. Products below the normal
+// floats err by 2^-149 each, far less than uN |n| if |n| >= kShortest.
 //
-// voronoi_error() = 32 uN exceeds both, with room for the roundings of a few sums of distances
-// (docs/voronoi.md, lemma V6).
+// voronoi_error() = 32 uN exceeds both errors, with room for the roundings of a few sums of
+// distances (docs/voronoi.md, lemma V6).
 
 /// The cubes [0, cells[0]] x [0, cells[1]] x [0, cells[2]] contain all triangles of the scene.
 struct VoronoiGrid {
@@ -63,8 +63,8 @@ struct VoronoiGrid {
   std::array<int, 3> cells = {1, 1, 1};
 
   int longest() const;  // the largest of `cells`
-  /// Converts a distance from units of the grid to world units, rounded up. Infinite if it is too
-  /// large for a double.
+  /// Converts a distance from units of the grid to world units, rounded up. Returns infinity if the
+  /// result is too large for a double.
   double world(double distance) const;
 };
 
@@ -182,15 +182,15 @@ struct VoronoiCounts {
 
 /// The result of a form of the diagram. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
-  /// Pairs of objects, sorted, distinct. In the published form, these are the two nearest objects
-  /// of some cell; if distances in float are equal, the objects with the lowest indices. In the
-  /// reliable form, they are the objects of `triangles`.
+  /// Pairs of objects, sorted, distinct. In the published form, a pair has the two objects nearest
+  /// to some cell; of objects at equal distances in float, those with the lowest indices. In the
+  /// reliable form, a pair has the two objects of a pair in `triangles`.
   std::vector<ObjectPair> objects;
   VoronoiCounts counts;
 
   // The published form leaves the members below empty.
-  /// Let d be the least distance of an object A from any other object. The list has every pair of a
-  /// triangle of A and a triangle of another object that are d apart. Sorted, distinct.
+  /// For each object A, let d be its least distance from any other object. The list has every pair
+  /// of triangles at distance d, one of A and one of another object. Sorted, distinct.
   std::vector<TrianglePair> triangles;
   /// For each object an upper bound of d, in world units. Infinite if the object has no triangles,
   /// or if no other object has triangles.

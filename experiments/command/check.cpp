@@ -63,8 +63,8 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// Returns the end of an error message: the meshes in the order that has the certificate's hash.
-// Empty if no order has this hash, or if there are more than four meshes (four have 24 orders).
+// Returns the end of an error message: the meshes in the order that gives the certificate's hash.
+// Returns "" if no order gives this hash, or if there are more than four meshes (24 orders).
 std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
                      const std::string& hash) {
   const std::size_t count = meshes.size();
@@ -252,8 +252,7 @@ class CheckCommand {
     to.pairs = pairs_.value_or("");
     if (frames_) to.frames = parse_frames(*frames_);
     if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-    // Exchanges the two if the scene comes first and the certificate last. The text of the file
-    // shows whether it is a certificate.
+    // Exchanges certificate and scene if the scene comes first on the command line.
     const auto is_certificate = [&](const std::string& path) {
       const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
       std::string text(100, ' ');

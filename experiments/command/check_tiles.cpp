@@ -44,9 +44,9 @@ struct CheckedTile {
   std::string pair;    // the pair that refutes the certificate, by its numbers in the scene
 };
 
-// Returns the reason why the tiles do not cover the scene. Empty if each tile begins where the
-// previous tile ends, the first tile has no beginning and the last tile has no end. Then each pair
-// belongs to one tile (docs/tiles.md).
+// Returns the reason why the tiles do not cover the scene. Returns "" if each tile begins where the
+// previous tile ends, the first tile has no lower bound, and the last tile has no upper bound. Then
+// each pair belongs to one tile (docs/tiles.md).
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {

@@ -231,7 +231,7 @@ int command_line(int argc, char** argv) {
   ::setenv("LP_NUM_THREADS", "0", 0);
   const Interruptible interruptible;
   try {
-    // This guard is for the main thread. core/base/parallel.h has one for each thread it starts.
+    // This guard is for the main thread. core/base/parallel.h makes one for each thread it starts.
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {

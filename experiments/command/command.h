@@ -55,7 +55,7 @@ inline Rows operator+(Rows first, const Rows& then) {
   return first;
 }
 
-/// The end of a help text. If it is a function, it is called when the help is printed.
+/// The text at the end of a help. A function is called when the help is printed.
 using Footer = std::variant<const char*, std::string, std::function<std::string()>>;
 
 /// Declares a subcommand of `parent`, a command or the program. The subcommand lives as long as
@@ -83,7 +83,7 @@ struct DeclaredCommand {
 /// parents: the names of the commands above `app`.
 DeclaredCommand declared(const CLI::App& app, const std::string& parents = "");
 /// Returns the text of --help for the command with these names, or for the program if there are no
-/// names. Empty if there is no such command.
+/// names. Returns "" if there is no such command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
 
 /// A topic of `farcull help`: a file of docs/help.
@@ -144,13 +144,13 @@ struct NamedFile {
   std::string path;  // "-": standard output
 };
 
-/// Returns one file per frame if there is a range and the path has a place for a number. Otherwise
+/// Returns one path per frame if there is a range and the path has a place for a number. Otherwise
 /// returns the path alone.
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
 /// Returns the files that load_scene() reads for these arguments or, with a range, FrameSource:
-/// - the scene file and its meshes, or the mesh files, a numbered file once per frame;
+/// - the scene file and its meshes, or the mesh files; for a numbered file, one file per frame;
 /// - the meshes of mesh_folder() if a built-in scene needs them, or if there are no arguments (then
 /// for all built-in scenes).
 /// NamedFile::by is SCENE. A file that cannot be read is no error here.
@@ -173,7 +173,7 @@ void print(const std::string& text);
 /// blanks. Replaces control characters, which paths may have.
 void complain(const std::string& message);
 
-/// Prints on standard error what reading files left out: each line of take_reading_notes(), once.
+/// Prints each line of take_reading_notes() once on standard error.
 void say_notes();
 
 /// Calls load_scene() and say_notes(), and make_self() if `self` is set.
@@ -190,7 +190,7 @@ void complain_broken(const std::string& message);
 /// collisions. command: a command line that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
 /// Throws Error if no pair of objects is left to test: the scene has two objects or more, tests
-/// none against itself, and `ignored` and scene.ignored together have all pairs. ignored: a result
+/// none against itself, and `ignored` and scene.ignored together hold all pairs. ignored: a result
 /// of in_order().
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
 /// Returns the command followed by the words of a scene, quoted for a shell.
@@ -233,8 +233,8 @@ struct Outputs {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
-/// Reads a number from `least` to `most`. Otherwise throws Error naming the option, with the reason
-/// "'TEXT' is WHAT".
+/// Reads a number from `least` to `most`. For any other text, throws Error naming the option, with
+/// the reason "'TEXT' is WHAT".
 template <class Value>
 Value number_of(const char* option, const std::string& text, const std::string& what, Value least,
                 Value most, const std::string& remedy) {
@@ -316,9 +316,9 @@ struct CheckArguments {
   bool verified = false;                 // true: calls check_again()
 };
 
-/// Prints the verdict. With frames or tiles, prints a verdict for each, and one for all. Returns 0
-/// if the certificate or the list is proved, else 1. Throws Error if a file cannot be read, and if
-/// only one of list and arguments has frames. Precondition: a certificate or a list is given.
+/// Prints a verdict for each frame or tile, and one for all. Returns 0 if the certificate or the
+/// list is proved, else 1. Throws Error if a file cannot be read, and if only one of list and
+/// arguments has frames. Precondition: a certificate or a list is given.
 int run_check(const CheckArguments& arguments);
 
 constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
@@ -331,17 +331,17 @@ std::string clean_lines(const std::string& text);
 /// Is called with each word of a scene: the words that scene_hash() hashes, in the same order.
 using TakeWord = std::function<void(std::uint64_t)>;
 
-/// Gives the certificates and the scene to `farcull-check-verified`, the checker that Coq has
-/// proved (verify/certificate/coq). The checker is in the folder of this program or in the PATH.
-/// Prints the SHA-256 of the files, then the checker's output, which is the same SHA-256 and a
-/// verdict. words: gives the words of the scene. status: the exit status of our own checker. Throws
-/// Error if the proved checker cannot be run, or if its verdict differs.
+/// Runs `farcull-check-verified`, the checker that is proved in Coq (verify/certificate/coq), on
+/// the certificates and the scene. This program is in the folder of farcull or in the PATH. Prints
+/// the SHA-256 sums of the files, then the checker's output: the same sums and a verdict. words:
+/// calls its argument with each word of the scene. status: the exit status of our own checker.
+/// Throws Error if the proved checker cannot be run, or if its verdict differs.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
-/// Checks certificates of tiles one after the other. Needs memory for the largest part of the
-/// scene, and for the triangles that meet one tile. whole: true if the tiles must cover the scene,
-/// in order. Prints the verdict. Returns the exit status, as run_check() does.
+/// Checks certificates of tiles one after the other. For each tile, reads the scene part by part
+/// (scene_in_parts()) and keeps only triangles that meet the tile. whole: true if the files must be
+/// all tiles of the scene, in their order. Prints the verdict. Returns the status of run_check().
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
 /// give_words() calls take() with all words of a scene, give_coordinates() only with those of its

@@ -51,8 +51,8 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
   for (const DeclaredCommand& below : command.commands) visit(below, see);
 }
 
-// Returns the branches of `case "$1" in`, one per command. A branch sets what may follow the
-// command: `below`, `flags`, `first`, `others`.
+// Returns the branches of `case "$1" in`, one per command. A branch sets the words that may
+// follow: `below` subcommands, `flags` options, `first` and `others` values of arguments.
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {

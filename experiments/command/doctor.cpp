@@ -173,9 +173,9 @@ Json probes_json(const std::vector<ProbeResult>& probes) {
   });
 }
 
-// Tests the kernels with each of lane_targets(). Counts results that lose a part of the exact
-// solid, and results that differ from those of the scalar kernel. Then counts violations of lemmas
-// 1 and 2 (LemmaRow). Restores the instruction set at the end.
+// Tests the kernels with each instruction set of lane_targets(). Counts results that lose a part of
+// the exact solid, and results that differ from those of the scalar kernel. Then counts violations
+// of lemmas 1 and 2 (LemmaRow). Restores the instruction set at the end.
 std::vector<ProbeResult> native_probes() {
   struct Restore {
     std::string target = lane_target();

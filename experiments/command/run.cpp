@@ -94,8 +94,8 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
 }
 
 // Returns lines about objects that may lie inside a closed object. Such an object's box lies in the
-// closed object's box, and the surfaces do not meet. Empty if there are no such objects, or if more
-// than a million pairs of boxes overlap.
+// closed object's box, and the surfaces do not meet. Returns "" if there are no such objects,
+// or if more than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record) {
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
@@ -136,7 +136,7 @@ std::string beside(const std::string& file, const std::string& record) {
       .string();
 }
 
-// `verify` requires the guarantee of every method. `plan` prints what `run` would do.
+// The commands run, verify and plan. `verify` fails if any method misses a pair. `plan` only plans.
 class RunCommand {
  public:
   enum class Kind { run, verify, plan };

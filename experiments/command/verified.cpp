@@ -1,4 +1,4 @@
-// Runs the proved checker. The scene is written for it as 64-bit words, lowest byte first: the
+// Runs the proved checker. Passes the scene to the checker as 64-bit words, lowest byte first: the
 // number of objects, their sizes, then all coordinates. So the checker need not read meshes.
 #include "experiments/command/command.h"
 
@@ -49,8 +49,8 @@ void require_said(const std::string& said, const std::vector<std::string>& certi
 }
 
 // Runs the proved checker. Returns its exit status: 0 proved, 1 refuted or not proved, 2 a file
-// that it cannot read. tiles: the certificates are those of all tiles of the scene, in order. The
-// words of the scene go to the checker through a file in memory.
+// that it cannot read. tiles: true if the certificates are those of all tiles, in their order.
+// Passes the words of the scene to the checker in a file in memory.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words) {
   // The checker inherits the file descriptor, and opens the file by this number.

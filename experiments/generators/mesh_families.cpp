@@ -265,7 +265,7 @@ void join_vertices(SuiteObject& object) {
 
 // The motions. All frames of a motion are made with the same random draws; only `now` and `frame`
 // differ. Coordinates have few bits, so that contacts are exact, and no face is parallel to an
-// axis. The family cogs is an exception to both.
+// axis. The family cogs has neither of these two properties.
 
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
   SuiteObject out;

@@ -98,8 +98,8 @@ MadePair vertex_face(RandomDraws& draws, double bits) {
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
-/// b has an edge in the plane of a. This edge is an edge of a, or begins inside a and is parallel
-/// to an edge of a.
+/// Makes a pair in which b has an edge in the plane of a. This edge is an edge of a, or begins
+/// inside a and is parallel to an edge of a.
 MadePair edge_face(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const Vec3 quarter = (a[1] - a[0]) / 4;
@@ -153,14 +153,14 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Returns two triangles that touch in one plane, after b has moved by `steps` times the shortest
-/// step: out of the plane, or in the plane across the common edge.
+/// Makes two triangles that touch in one plane. Then moves b by `steps` times the shortest step,
+/// out of the plane, or in the plane across the common edge.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
   constexpr double kExtent = 0x1p44;
   const auto drawn = [&] { return draws.whole(-kExtent, kExtent); };
-  // a is below the edge from (0, 0) to (length, 0). If b moves in the plane, it is above that edge.
+  // a is below the edge from (0, 0) to (length, 0). b is above that edge if b moves in the plane.
   const double length = draws.whole(kExtent / 2, kExtent);
   const double depth = draws.whole(1, kExtent);
   const double height = draws.whole(1, kExtent);
@@ -172,7 +172,7 @@ MadePair coplanar_step(RandomDraws& draws, double steps) {
   const double shift = drawn() / 2;
   MadePair pair;
   pair.a = {at(0, 0, 0), at(length, 0, 0), at(drawn(), -depth, 0)};
-  // If b moves out of the plane, b is on the same side of the edge as a. Without the move, both
+  // If b moves out of the plane, b is on the same side of the edge as a. Without the move, a and b
   // would overlap.
   const double top = in_plane ? height : -height;
   const double from = std::floor(in_plane ? shift : length / 4);

@@ -49,8 +49,8 @@ void each_corner(DrawnPair& pair, const Function& function) {
     for (Vec3& p : *t) function(p);
   }
 }
-/// Returns a triangle along u and v. The point `at` is a corner (where == 0), on an edge (1) or in
-/// the interior (2).
+/// Returns a triangle in the plane through `at` along u and v. The point `at` is a corner if
+/// `where` is 0, on an edge if 1, and in the interior if 2.
 inline std::array<Vec3, 3> with_point(int where, const Vec3& at, const Vec3& u, const Vec3& v) {
   if (where == 0) return {at, at + u, at + v};
   return {where == 1 ? Vec3(at - u) : Vec3(at - u - v), at + u, at + v};
@@ -67,10 +67,10 @@ struct Frame {
   Vec3 at(const Vec3& p) const { return at(p.x(), p.y(), p.z()); }
 };
 
-/// Returns 3 times the rotation of a quaternion with parts -1, 0 and 1. Its entries are 1, 2, -1 or
-/// -2, so no axis is along an axis of the coordinates.
+/// Returns 3 times the rotation matrix of a quaternion with one part 0 and three parts +-1. The
+/// matrix entries are +-1 or +-2, so no axis of the frame is along a coordinate axis.
 Frame leaning_frame(RandomDraws& draws);
-/// Returns the rotation of a quaternion with integer parts from -9 to 9. Its entries are rounded.
+/// Returns the rounded rotation matrix of a random quaternion with integer parts from -9 to 9.
 Frame turned_frame(RandomDraws& draws);
 
 // The families of a suite (docs/suite.md), of pairs and of meshes. Each family makes pairs that
@@ -119,8 +119,8 @@ struct MeshFamily {
 const std::vector<MeshFamily>& mesh_families();
 
 /// Returns the objects of member `index` of a family. The objects depend only on the arguments. All
-/// frames of a motion are made with the same draws. If MeshFamily::self, no two vertices of an
-/// object have the same position.
+/// frames of a motion are made with the same draws. If MeshFamily::self is true, no two vertices of
+/// an object have the same position.
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index);
 

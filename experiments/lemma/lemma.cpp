@@ -1,5 +1,5 @@
-// Generators make hard triangles. The triangles are drawn in windows, and points of the triangles
-// are tested in exact arithmetic.
+// Makes triangles that are hard cases for the lemmas, fattens and draws them. Compares the samples
+// of each pixel, in exact arithmetic, with points of the triangles in the pixel.
 #include "experiments/lemma/lemma.h"
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ constexpr double kUsualDepth = 128;  // default of LemmaSettings::depth
 using Random = RandomNumbers;
 using Weights = std::array<int, 3>;  // weights of a triangle's corners; they give one of its points
 
-// A triangle in pixel space, and its points to test. The origin is a pixel corner, at the centre of
-// the triangle's cell.
+// A triangle in px, and its points to test. The origin is a pixel corner. run_round() divides the
+// window into square cells, and moves the origin of each trial to the centre of its cell.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<Weights> weights;
@@ -129,8 +129,8 @@ Trial segment_or_point(Random& random) {
 }
 
 // A triangle nearly along the viewing direction. In the image its longest edge is at 45 degrees,
-// and the middle of this edge is at a pixel corner. So the face of the fattened box next to a pixel
-// centre is as steep as the edge. `lean` is a multiple of 2^-20 px, so that the middle is exact.
+// and the middle of this edge is at a pixel corner. So the fattened box has, near a pixel centre, a
+// face that is as steep as the edge. `lean` is a multiple of 2^-20 px, so that the middle is exact.
 Trial steep_corner(Random& random) {
   const double lean = std::floor(std::exp2(random.between(-10, -1)) * 0x1p20) * 0x1p-20;
   const Vec3 q(0, 0, random.between(-20, 20));
@@ -177,8 +177,8 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// Returns depth_rounding() in steps of 2^-24. A 16-bit buffer errs by up to 1 / (2^16 - 1) when it
-// stores a depth, and by up to 2^-24 when the depth is read back as a float.
+// Extends depth_rounding() to 16 bits, in units of 2^-24. A 16-bit buffer adds an error of at most
+// 1 / (2^16 - 1) when it stores a depth, and of at most 2^-24 when the depth is read as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }

@@ -1,6 +1,6 @@
 // Finds distances between objects, with nearest points (docs/proximity.md), and all pairs of
-// triangles within a distance. Exact arithmetic decides which pairs are answers. Each number is the
-// exact value, rounded once. The exception is DistanceKind::all without
+// triangles within a distance. Exact arithmetic decides which pairs are answers. Each number of an
+// answer is the exact value, rounded once, except for DistanceKind::all without
 // DistanceFinderOptions::exact.
 #pragma once
 
@@ -58,8 +58,8 @@ struct DistanceAnswer {
   double distance = 0;  // rounded to nearest; infinity beyond the largest double
   std::string squared;  // with `exact`: "numerator/denominator" in lowest terms, nothing rounded
   std::array<double, 3> point_a{}, point_b{};  // nearest points, each coordinate rounded
-  /// Barycentric coordinates of the points: weights of the triangle's three corners. Each weight is
-  /// at least 0. Their sum is 1 up to rounding.
+  /// Barycentric coordinates of point_a and point_b. Each has three weights, one per corner of its
+  /// triangle. Each weight is at least 0. The sum of the three weights is 1 up to rounding.
   std::array<double, 3> weights_a{}, weights_b{};
   std::array<double, 3> normal{};    // unit vector from point_a to point_b; 0 if the triangles meet
   std::string feature_a, feature_b;  // where the points lie: "vertex 2", "edge 0" or "face"; edge i

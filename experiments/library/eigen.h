@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// Copies matrices, and converts to an Input. The EigenInput must live as long as the Input.
+/// Copies matrices. Converts implicitly to an Input, which is valid while the EigenInput lives.
 ///
 ///   collider.find(farcull::EigenInput(V, F, object_starts));
 class EigenInput {

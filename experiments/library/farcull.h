@@ -181,8 +181,8 @@ Result collide(const Input& input, const Options& options = {});
 
 /// Finds colliding pairs repeatedly. From call to call it keeps buffers, and results about
 /// triangles that did not move. Any thread may call it, but only one call may run at a time. A
-/// second call meanwhile throws Error and changes nothing. A call of a moved-from Collider does the
-/// same. While a Collider is moved or destroyed, no other thread may use it.
+/// second call meanwhile throws Error and changes nothing. A call of a moved-from Collider also
+/// throws Error. While a Collider is moved or destroyed, no other thread may use it.
 class Collider {
  public:
   /// Throws Error naming the option that is bad.

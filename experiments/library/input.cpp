@@ -290,7 +290,7 @@ bool are_alone(const Input& input) {
          input.object_starts.empty();
 }
 
-// True if load_poses() takes less time than load_input(). triangles: the number of triangles in
+// Returns true if load_poses() is faster than load_input(). triangles: the number of triangles in
 // overlapping blocks, which load_poses() tests. of_moved: the number of triangles that moved.
 //
 // If the results of the last call are kept, load_input() tests only the triangles that moved. Else

@@ -95,7 +95,7 @@ struct TakenInput {
   std::optional<RigidBlocks> rigid;  // made of the unmoved vertices; null: not made yet
   double loss = 0;                   // lost time, in triangles; see pays() in input.cpp
   /// skips: how many of the next calls of load_poses() return null at once. next_skips: the value
-  /// of `skips` after the next failure. It doubles with each failure and is 1 after a success.
+  /// of `skips` after the next failure; doubled by each failure, and 1 after a success.
   int skips = 0, next_skips = 1;
 };
 inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};

@@ -1,6 +1,6 @@
-// Sets up the contestants. Methods run through the pipeline of `farcull run`, peers through their
+// Sets up the contestants: methods, which run as by `farcull run`, and peers, which run by their
 // own code. Runs a cold round, then the rounds that count. Compares every contestant's pairs with
-// the pairs of the first contestant. Prints the table and JSON.
+// the pairs of the first contestant. Makes the table and JSON.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>

@@ -193,9 +193,9 @@ struct PoseBenchResult {
   std::optional<std::size_t> fastest_peer;  // index into rows
 };
 
-/// Turns the first object a little in each frame, and finds the colliding pairs of different
-/// objects. Throws Error naming the option if a peer is unknown or `repeat` is below 1. Throws as
-/// Collider::find() does.
+/// Times frames, in each of which the first object turns a little. Each contestant finds the
+/// colliding pairs of different objects. Throws Error naming the option if a peer is unknown or
+/// `repeat` is below 1. Throws as Collider::find() does.
 PoseBenchResult bench_poses(const Scene& scene, const PoseBenchOptions& options,
                             const Progress& progress = {});
 

@@ -64,7 +64,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
 }
 
 // Throws Error if a resolution is too large for the device. Every device of OpenGL 4.3 supports
-// 8192 px, which is half of the least limit. So the device is opened only for larger resolutions.
+// 8192 px, so the device is opened only for larger resolutions.
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {

@@ -31,8 +31,8 @@ std::vector<std::string> keys_of_frame() {
 
 Json rate_json(double ms) { return json_of(per_second(ms)); }
 
-// Returns the record of a frame. head: the record of the first frame. Entries that are equal in all
-// frames are written only if they differ from `head`.
+// Returns the record of a frame. head: the record of the first frame. Entries that are usually the
+// same in all frames are written only if they differ from `head`.
 Json frame_json(const Scene& scene, const Record& record, const Json& head, long frame,
                 double read_ms, const FrameSource& source) {
   const Json run = to_json(scene, record);

@@ -14,7 +14,7 @@ namespace farcull {
 
 /// Calls `one` for each frame of the range. The progress `named` puts `before` and "frame 3 of 10:
 /// " before the name of a stage. SIGINT, SIGTERM and SIGHUP end the program at once. If `end` is
-/// not null, they also print the number of finished frames and `end` on standard error.
+/// not null, the signal handler first prints the number of finished frames and `end`.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
                     const std::function<void(long frame, const Progress& named)>& one);

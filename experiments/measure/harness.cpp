@@ -1,5 +1,5 @@
-// Runs the contestants in rounds and summarizes their times. The C++ standard fixes the random
-// numbers of the bootstrap.
+// Runs the contestants in rounds and summarizes their times. The bootstrap uses std::mt19937_64,
+// which gives the same random numbers with every library.
 #include "experiments/measure/harness.h"
 
 #include <numeric>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kResamples = 10000;
 constexpr std::uint64_t kSeed = 1;
 
-// Returns middle(values) and reorders the values. Precondition: not empty.
+// Returns middle(values) and reorders the values. Precondition: there is a value.
 double middle_of(std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(n / 2);

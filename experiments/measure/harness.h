@@ -40,7 +40,7 @@ Spread spread_of(std::vector<double> values);
 nlohmann::ordered_json to_json(const Spread& spread);
 
 /// Returns the index of the run with the median time. If the number of runs is even, there are two
-/// middle runs, and the faster one is returned. Precondition: not empty.
+/// middle runs, and the faster one is returned. Precondition: there is a run.
 std::size_t median_run(const std::vector<double>& ms);
 
 /// Returns the time of culling and exact tests in ms, by which runs are compared.

@@ -34,17 +34,17 @@ SquaredRange range_of(const Box& a, const Box& b) {
 }
 
 // Returns a limit for computed squared distances. largest: the computed square of a distance D. A
-// box whose computed squared distance is above the limit is truly farther away than D. Derivation:
-// let u = 2^-53. A difference, a square and two sums round. A square below 2^-1022 has an absolute
-// error of 2^-1075. So a computed squared distance has a relative error of (1 - u)^5 to (1 + u)^5,
-// and an absolute error of 2^-1072. The factor 1 + 16 u covers the relative errors of two squared
-// distances and of this product. 2^-1000 covers the absolute errors. If a square overflows, the
-// limit is infinite, and the box is kept.
+// box whose computed squared distance is above the limit is farther away than D. Derivation: let
+// u = 2^-53. Differences, squares and two sums round, so a computed squared distance is the exact
+// one times a factor in [(1 - u)^5, (1 + u)^5]. Squares below 2^-1022 add an absolute error of at
+// most 2^-1072. The factor 1 + 16 u covers the relative errors of two squared distances and of the
+// product below. The term 2^-1000 covers the absolute errors. If `largest` overflows, the limit is
+// infinite, and every box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // For an object a, the bound is the minimum, over all other objects, of the largest distance
 // between the two boxes. Object b may be nearest to a if the least distance of their boxes is at
-// most the bound. The triangles are chosen by the same bound, with their boxes.
+// most the bound. The same bound, applied to boxes of triangles, selects triangles.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -120,8 +120,8 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
 // For each object, counts the triangles of other objects in its pairs, each triangle once. The
 // pairs (a, b) are sorted, with a < b, and the triangles of an object have consecutive numbers. So
 // all pairs whose a is in one object are consecutive. All pairs of one a with the triangles of one
-// object are consecutive, too. So it is enough to store, for each b, the object of its last a, and
-// for each object of b, the last a.
+// object are consecutive, too. So two kinds of stored values reveal a repetition: for each triangle
+// b, the object of the last a that was paired with b; for each object of a b, the last a.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);

@@ -71,8 +71,8 @@ std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
 bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 
 /// Sizes of the sets, and how many nearest neighbours the sets miss. A nearest pair of triangles is
-/// missed if NeighbourSets::pairs lacks the pair. If the method gives no pairs of triangles, the
-/// pair is missed if the pair of objects is missed.
+/// missed if NeighbourSets::pairs lacks the pair. If the method gives no pairs of triangles, a
+/// nearest pair of triangles is missed if its pair of objects is missed.
 struct NeighbourSizes {
   std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // objects whose set holds none of their nearest objects

@@ -58,7 +58,7 @@ class Objects {
     return facts.parts;
   }
 
-  /// Returns `contained` if a part of `inner` is inside `outer`, `clear` if no part is inside, and
+  /// Returns `contained` if a connected part of `inner` is inside `outer`, `clear` if none is, and
   /// `unknown` if this is undecided, for example because `outer` is not closed. Unless the result
   /// is `clear`, sets `point` to a corner of that part. Precondition: the surfaces do not meet, so
   /// one point decides for its whole part (experiments/method/distances.cpp).
@@ -138,8 +138,8 @@ void describe(const Scene& scene, const Objects& objects, std::span<const Triang
     } else {
       row.box.add(intersection(objects.triangle_box(pairs[k].a), objects.triangle_box(pairs[k].b)));
     }
-    // Skips segments of coplanar triangles, which may be diagonals of flat faces. A segment on a
-    // real edge of a closed part is found with the edge's other triangle as well.
+    // Skips segments of coplanar triangles, which may be diagonals of flat faces. If such a
+    // segment is on a real edge of a closed object, the edge's other triangle gives it as well.
     if (contact.dimension != 1 || contact.kind == ContactKind::coplanar) continue;
     const auto& [p, q] = contact.ends;
     ends.push_back({{{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}}});
@@ -241,10 +241,10 @@ std::vector<Vec3> ways_apart(const Scene& scene, std::span<const TrianglePair> p
   return out;
 }
 
-/// Bounds the depth if options.depth is set. If the upper bound of the depth is at most the
-/// tolerance, the verdict becomes `touch`. If the tolerance is between the bounds and no deep point
-/// is found, sets ClashRow::shallow. pairs: the triangles that meet; empty if one object contains
-/// the other. Precondition: each object is closed.
+/// Bounds how deep two objects overlap, if options.depth or options.tolerance is set. If the upper
+/// bound is at most the tolerance, the verdict becomes `touch`. If the tolerance is between the
+/// bounds and no deep point is found, sets ClashRow::shallow. pairs: the triangles that meet; empty
+/// if one object contains the other. Precondition: each object is closed.
 void bound_depth(const Scene& scene, const Objects& objects, std::span<const TrianglePair> pairs,
                  const ClashOptions& options, ClashRow& row) {
   const ClosedObject &a = objects.solid(row.objects.a), &b = objects.solid(row.objects.b);
@@ -263,8 +263,8 @@ void bound_depth(const Scene& scene, const Objects& objects, std::span<const Tri
         penetration(a, b, starts, options.threads, DepthLimit{.most = tolerance, .ways = ways});
     if (found.hi > tolerance) {
       // A point is deep if it is inside an object, farther than the tolerance from the object's
-      // surface. It stays inside if it moves by the tolerance. The distance is rounded, so this is
-      // no proof.
+      // surface. Such a point stays inside if it moves by the tolerance. The computed distance is
+      // rounded, so a deep point proves nothing.
       const auto is_deep = [&](const Vec3& p) {
         return std::ranges::any_of(std::array{&a, &b}, [&](const ClosedObject* solid) {
           return solid->has(p) && (solid->nearest(p) - p).norm() > tolerance;

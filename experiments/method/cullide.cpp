@@ -30,7 +30,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset == "obb") return {obb_fattener()};
-  // A new offset goes here.
+  // Add a new offset here.
   // Without a guarantee, culling by oriented boxes first would add one more way to miss pairs.
   if (!is_thrifty(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};
@@ -195,7 +195,7 @@ bool compare_boxes(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& w
   stage.ran = true;
   stage.reason = Reason::boxes_meet;
   stage.n = pairs->size();
-  // At first each object is one owner. This gives the triangles to draw. Then objects that are
+  // First, each object is one owner, and the triangles to draw are selected. Then objects that are
   // tested against themselves are cut into patches, and each patch is an owner.
   work.pairs = split_pairs(scene, *pairs, join_owners(scene));
   work.regions = regions_of(scene, work.pairs->drawn);

@@ -84,7 +84,7 @@ std::string driver_environment() {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
     // Mesa also reads each driconf option from an environment variable with the option's lower-case
-    // name. Other variables in lower case are rare, except proxy settings.
+    // name. So all variables in lower case are used, except `_` and proxy settings.
     const std::string name = variable.substr(0, variable.find('='));
     const bool may_be_driconf =
         std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }) && name != "_" &&
@@ -308,8 +308,8 @@ DeviceVerdict keep_verdict(const GlInfo& device, const std::vector<ProbeResult>&
   if (results.empty()) out.problem = "there are none";
   out.holds = out.problem.empty() && out.failed.empty();
   const std::string inputs = text_of(verdict_inputs(device)), file = file_of(inputs);
-  // If the new verdict does not hold, the older file is removed first, or emptied if it cannot be
-  // removed. So no refuted verdict stays, even if a later step fails.
+  // If the device breaks an assumption, the older file is removed first, or emptied if it cannot be
+  // removed. So no file keeps a refuted verdict, even if a later step fails.
   std::error_code error;
   if (!out.holds && !file.empty() && !fs::remove(file, error) && error)
     fs::resize_file(file, 0, error);

@@ -78,10 +78,10 @@ using Probes = std::function<std::vector<ProbeResult>()>;
 /// Receives a line of text for the user.
 using Say = std::function<void(const std::string& line)>;
 
-/// Returns the verdict that is stored in its file. If there is no such file, runs `probes`, then
-/// stores and returns their verdict. A file that is damaged, belongs to another user, or has other
-/// inputs is ignored and replaced. Errors of the file system do not throw. Exceptions of `probes`
-/// are passed on. say: gets a line before the probes run, and a line if storing fails.
+/// Returns the verdict that a file has for the device. If there is no such file, runs `probes`,
+/// then stores and returns their verdict. A file that is damaged, belongs to another user, or has
+/// other inputs is ignored and replaced. Errors of the file system do not throw. Exceptions of
+/// `probes` are passed on. say: gets a line before the probes run, and a line if storing fails.
 DeviceVerdict device_verdict(const GlInfo& device, const Probes& probes, const Say& say = {});
 
 /// Makes a verdict from the results of probes. Replaces the older file of the verdict. If a probe

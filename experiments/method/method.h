@@ -38,7 +38,7 @@ class Session;      // session.h
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
 /// Runs the method: finds the candidates of the planned scene. take: receives the candidates of a
-/// tree of boxes when they are found (Candidates::streamed). If empty, candidates are listed.
+/// tree of boxes as they are found (Candidates::streamed). If `take` is empty, they are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 
@@ -69,7 +69,7 @@ std::string to_string(Method method);
 Method parse_method(const std::string& name, const std::string& option = "{method}");
 /// Returns the names of the methods for which `can` returns true; all names if `can` is empty.
 std::vector<std::string> list_of_methods(const std::function<bool(const Traits&)>& can = {});
-/// Returns these names in one text: "far, cullide, ... or exact".
+/// Returns the names of list_of_methods() in one text: "far, cullide, ... or exact".
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
 
 inline bool draws(Method method) { return traits(method).draws; }

@@ -23,7 +23,7 @@ constexpr std::size_t kMostParts = std::size_t{1} << 22;  // largest number of p
 constexpr int kMostRepeats = 200;
 // Standard deviation (px) of the change that snapping makes to a triangle's height over its longest
 // edge. Snapping moves corners to multiples of 2^-b px (b: kNativeSubpixelBits). So the error along
-// each axis has the variance 4^-b / 12. The variance of the height is 5/3 of this, averaged over
+// each axis has the variance 4^-b / 12. The variance of the height is 5/3 of that, averaged over
 // the positions of the height's foot.
 const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
 
@@ -102,8 +102,8 @@ Polygon hull(std::vector<Point2> of) {
 // components and the determinant 1 map pixel centres to pixel centres. So the probability that the
 // image contains a centre is the same in all such axes. In suitable axes, a needle in the direction
 // (2, 3) is a narrow strip. Lagrange's reduction, applied to the moments of the corners, finds
-// suitable axes. It ends if the longer size is at most 1 px, since then the area is the smallest
-// bound.
+// suitable axes. The reduction ends if the longer size is at most 1 px. Then the area is the
+// smallest bound on this probability.
 std::array<double, 2> compact_sizes(const Polygon& image) {
   Point2 a{1, 0}, b{0, 1};
   while (true) {
@@ -390,8 +390,8 @@ class Equations {
 
  private:
   // State[side][triangle] is the probability that the triangle is not cleared. Plain CULLIDE has
-  // one side. Quick-CULLIDE has two sides: 0 is against earlier owners (bit F), 1 is against later
-  // owners (bit L).
+  // one side. Quick-CULLIDE has two sides: side 0 tests against earlier owners (bit F), side 1
+  // against later owners (bit L).
   using State = std::array<std::vector<double>, 2>;
 
   int sides() const { return settings_.quick ? 2 : 1; }
@@ -474,8 +474,8 @@ class Equations {
 
 }  // namespace
 
-// The assumed error of the model: a factor of 1.2 in the number of missed pairs, and a factor of
-// 1.5 in the number of found pairs. The tighter of the two bounds is used.
+// The model is assumed to err by at most a factor of 1.2 in the number of missed pairs, and of 1.5
+// in the number of found pairs. low() and high() use the tighter of the two bounds.
 double MissPrediction::low() const {
   const auto all = static_cast<double>(colliding);
   return std::max(std::max(missed / 1.2, all - 1.5 * (all - missed)) - 2 * deviation, 0.0);
@@ -487,9 +487,9 @@ double MissPrediction::high() const {
 
 double centre_probability(double area, double width, double height, double radius,
                           double sharpness) {
-  // The probability is at most the area, the width and the height. A disc in the region contains a
-  // centre with probability `disc`. If the disc contains none, the same bounds apply to the region
-  // without the disc, divided by the probability `rest` of this case.
+  // The area, the width and the height are upper bounds of the probability. A disc in the region
+  // contains a centre with probability `disc`. If the disc contains none, the same bounds hold for
+  // the region without the disc, divided by the probability `rest` of this case.
   const double disc = disc_share(radius), rest = 1 - disc;
   if (rest <= 0) return 1;
   const auto term = [&](double size) { return std::pow(std::max(size / rest, 1e-12), -sharpness); };

@@ -36,8 +36,8 @@ struct MissesOfPlan {
 };
 /// Finds the colliding pairs by exact tests, and predicts the misses.
 MissesOfPlan misses_of(const Scene& scene, const Plan& plan);
-/// Returns a line of text: "misses     46 of 203 colliding pairs expected, 30 to 70". Empty for
-/// a method with a guarantee.
+/// Returns a line of text: "misses     46 of 203 colliding pairs expected, 30 to 70".
+/// Returns "" for a method with a guarantee.
 std::string misses_line(const MissesOfPlan& misses);
 
 /// Determines how close centre_probability() is to its upper bound min(1, area, width, height). An
@@ -49,9 +49,9 @@ constexpr double kMissSharpness = 3.5;
 double centre_probability(double area, double width, double height, double radius = 0,
                           double sharpness = kMissSharpness);
 
-/// Returns the prediction for a plan. Empty if too many images of triangles overlap. colliding: the
-/// colliding pairs of the scene, without ignored pairs. Precondition: why_unpredicted(options) is
-/// empty, and no object is tested against itself.
+/// Returns the prediction for a plan; nothing if too many images of triangles overlap. colliding:
+/// the colliding pairs of the scene, without ignored pairs. Precondition: why_unpredicted(options)
+/// is empty, and no object is tested against itself.
 std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan& work,
                                              const RunOptions& options,
                                              std::span<const TrianglePair> colliding,

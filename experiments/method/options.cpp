@@ -102,7 +102,7 @@ bool take_device(const std::string& text, RunOptions& options) {
   return is_device(text);
 }
 
-// Values of Option::serves. Each is true for the methods that have an option.
+// Functions for Option::serves. Each returns true for the methods that have the option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }

@@ -76,7 +76,7 @@ struct Option {
   bool (*serves)(const Traits&);  // true for methods that have the option
   /// Reads a value ("" for a flag). Returns false if the text is no value of the option. May throw
   /// Error with a better message. Precondition: options.method is set. Null for an option about the
-  /// scene, which the caller reads.
+  /// scene; the caller reads such an option.
   bool (*take)(const std::string& text, RunOptions& options) = nullptr;
   const char* kind = "";    // the error for a bad value says that it "is no <kind>"
   const char* remedy = "";  // what the error says to give instead
@@ -100,7 +100,7 @@ std::span<const Option> run_options();
 /// Returns the option with this name. Precondition: the option exists.
 const Option& run_option(std::string_view name);
 /// Returns the name as a command line has it: "--depth-format" for depth_format, "farcull doctor"
-/// for doctor. Returns nothing for an unknown name. An argument of spell_parameters().
+/// for doctor. Returns "" for an unknown name. spell_parameters() takes this function.
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".

@@ -48,7 +48,7 @@ Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
           const BlockDecision* decided = nullptr);
 
 /// Throws Error if an object must be tested against itself and the method cannot do that. Throws
-/// Error if no object must be tested against itself and the method can do nothing else.
+/// Error if no object must be tested against itself and the method tests only such objects.
 void require_scene(const Scene& scene, Method method);
 
 }  // namespace farcull

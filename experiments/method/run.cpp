@@ -18,7 +18,7 @@
 namespace farcull {
 namespace {
 
-// Decides each candidate in the thread that found it. marks: records the triangles of candidates.
+// Decides each candidate in the thread that found it. marks: true to record their triangles.
 class StreamingDecider {
  public:
   StreamingDecider(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
@@ -109,7 +109,7 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
 }
 
 // Tests candidates in the order of pairs until options.limit pairs collide. Ends after about
-// kMostSearched + 16 * limit candidates, since hardly any candidate may collide.
+// kMostSearched + 16 * limit candidates, since few of the candidates may collide.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;

@@ -41,8 +41,8 @@ struct RunUse {
   bool decide_neighbours = true;  // false: neighbours are counted, but not decided
 };
 
-/// Plans, finds and decides. If RunOptions::verify is set, accounts for every pair. Throws Error as
-/// plan() and find() do.
+/// Plans the run, finds the candidates and decides them exactly. If RunOptions::verify is set, also
+/// accounts for every pair of triangles. Throws Error as plan() and find() do.
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress = {}, const RunUse& use = {});
 
@@ -65,8 +65,8 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 /// must then cover all other pairs.
 std::vector<TrianglePair> pairs_left(const Record& record);
 
-/// True if a method with a guarantee missed a pair. strict: a method without a guarantee counts too
-/// (`farcull verify`). Ignores the verdict about the device.
+/// True if a method with a guarantee missed a pair. strict: also true if a method without a
+/// guarantee missed a pair (`farcull verify`). Ignores the verdict about the device.
 bool broken(const Record& record, bool strict);
 
 // It is an error if no pair is tested, since an answer of 0 pairs would look like a scene without

@@ -1,6 +1,6 @@
 // farcull's own methods as contestants. The environment variable FARCULL_CONTEST_DEVICE names the
-// device; without it the cores of the CPU are used. Methods run as by `farcull run`. Exception:
-// `boxes` runs by Collider::find() of the library.
+// device; without the variable, the cores of the CPU are used. Methods run as by `farcull run`,
+// except that `boxes` runs by Collider::find() of the library.
 #include <algorithm>
 #include <map>
 

@@ -90,9 +90,9 @@ std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corner
   return {dot(n, points[0]) + d, dot(n, points[1]) + d, dot(n, points[2]) + d};
 }
 
-/// Returns the part of a line that lies in a triangle. The line is common to the planes of two
-/// triangles. p: coordinates of the corners along the line. d: distances of the corners from the
-/// other plane. Precondition: the three numbers d do not have the same sign, and are not all 0.
+/// Returns the part of a line that lies in a triangle. The line is where the triangle's plane meets
+/// the other triangle's plane. p: coordinates of the corners along the line. d: signed distances of
+/// the corners from the other plane. Precondition: d has neither one strict sign nor only zeros.
 template <class T>
 std::array<T, 2> interval(const std::array<T, 3>& p, const std::array<T, 3>& d) {
   // Finds the corner that is alone on its side of the other plane.

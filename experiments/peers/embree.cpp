@@ -1,5 +1,5 @@
-// Embree's rtcCollide as a broad phase. This function searches hierarchies of user geometries. The
-// boxes of the geometries are in float, and are rounded outward.
+// Embree as a broad phase: rtcCollide() searches hierarchies of user geometries. The boxes of the
+// geometries are in float, and are rounded outward.
 #include <embree3/rtcore.h>
 
 #include <algorithm>

@@ -98,9 +98,9 @@ std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
 std::vector<Peer> all_peers();
 
 /// Returns libraries as their users run them, with their own inexact test of two triangles. So
-/// pairs may be missed or wrong. fcl-float and fcl-double use FCL's OBBRSS hierarchies and
-/// fcl::collide() on coordinates rounded to float or double. ode-trimesh uses the contacts of ODE's
-/// dCollide(). BenchAnswer::pairs has the pairs that the library reports, without neighbours
+/// pairs may be missed or falsely reported. fcl-float and fcl-double use FCL's OBBRSS hierarchies
+/// and fcl::collide() on coordinates rounded to float or double. ode-trimesh uses the contacts of
+/// ODE's dCollide(). BenchAnswer::pairs has the pairs that the library reports, without neighbours
 /// (verify/exact.h). candidate_pairs is the number of these pairs. FCL's pairs of objects are
 /// divided over the threads.
 std::vector<Peer> narrow_peers();

@@ -50,8 +50,8 @@ namespace {
 
 using nlohmann::json;
 
-// The files of three.js, a library for WebGL in browsers (Debian's libjs-three). They are part of
-// the program. All members are empty if the program was built without three.js.
+// The files of three.js, a library for WebGL in browsers (Debian's libjs-three), as embedded in the
+// program. All members are empty if the program was built without three.js.
 struct ThreeJs {
   std::string_view library;   // three.min.js
   std::string_view controls;  // OrbitControls.js: moves the camera by mouse and touch

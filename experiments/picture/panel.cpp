@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of diameter 2 sqrt(2) px contains a complete pixel, wherever its centre lies. So at least
-// one pixel gets the unblended colour. Reason: the disc's centre is at most half a pixel diagonal
-// from a pixel centre, and the corners of this pixel are half a diagonal from the pixel centre.
+// A disc of diameter 2 sqrt(2) px, wherever its centre lies, contains a complete pixel. This pixel
+// gets the unblended colour. Reason: some pixel's centre is at most half a pixel diagonal from the
+// disc's centre, and this pixel's corners are half a diagonal from the pixel's centre.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.

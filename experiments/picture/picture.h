@@ -1,4 +1,4 @@
-// `farcull picture`: makes a picture or an HTML page of a method's result on a scene. It shows the
+// `farcull picture`: makes a picture or an HTML page of a method's result on a scene. Both show the
 // colliding triangles, the missed triangles, and the kept triangles that do not collide.
 #pragma once
 
@@ -55,9 +55,9 @@ std::string packed_bytes(std::string_view bytes);
 /// Precondition: the numbers are below `count`.
 std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
 
-/// Returns the coordinates in steps of 1/65535 of the box: all x, then all y, then all z. Points
-/// outside the box are moved to its border. If the box has no extent along an axis, the coordinates
-/// on this axis are 0.
+/// Returns the positions of points in the box, in units of 1/65535 of the box's extent along each
+/// axis: all x, then all y, then all z. Points outside the box are moved to its border. If the box
+/// has no extent along an axis, the coordinates on this axis are 0.
 std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
 
 /// The largest numbers of triangles, colliding pairs and objects that a page can show. Objects are

@@ -22,9 +22,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};  // time between checks for signals
 
-// Maps and frees one large block. This makes the GNU C library keep more free memory for the
-// process. Otherwise each call requests the same pages again, which took half of the time of small
-// scenes. A threshold that the environment or mallopt() has set is kept.
+// Allocates and frees one large block. This raises the thresholds of the GNU C library, so that it
+// keeps more free memory. Otherwise each call requests the same pages again, which took half of the
+// time of small scenes. Thresholds that the environment or mallopt() has set are not changed.
 void keep_small_memory() {
 #ifdef __GLIBC__
   static const bool done = [] {
@@ -174,7 +174,7 @@ std::span<const Number> numbers_of(const py::array& array) {
 }
 
 // pybind11 and numpy keep state in global variables, which all interpreters of a process share.
-// pybind11 waits forever if it first sees an interpreter other than the main one.
+// If the first interpreter that uses pybind11 is not the main one, pybind11 waits forever.
 constexpr const char* kNotMain =
     "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
     "process of its own";

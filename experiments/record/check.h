@@ -24,10 +24,10 @@ nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<Triangl
 
 /// Returns what the verdict `proved` proves: "these 12 pairs of the scene meet, and no others".
 std::string proved_text(const Scene& scene, const SceneCheck& check);
-/// Returns the beginning of this statement, without its limits.
+/// Returns the beginning of the statement that proved_text() returns, without the limits.
 std::string proved_text(std::size_t pairs, double clearance);
-/// Returns the limits at the end of this statement; empty if it is about all pairs. self: an object
-/// is tested against itself; ignores: pairs of objects are ignored.
+/// Returns the limits at the end of that statement; empty if the statement is about all pairs.
+/// self: an object is tested against itself. ignores: pairs of objects are ignored.
 std::string proved_limits(double clearance, bool self, bool ignores);
 /// Returns one line or two: the verdict, its reason, and the pair that the reason is about.
 std::string verdict_text(const Scene& scene, const SceneCheck& check);

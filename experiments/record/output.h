@@ -20,8 +20,8 @@
 
 namespace farcull {
 
-/// Returns a value of a record as JSON. A struct with fields becomes an object, an enumeration its
-/// word. An empty optional or a number that is not finite becomes null. Other values stay.
+/// Returns a value of a record as JSON. A struct with fields becomes an object. An enumeration
+/// becomes its word. An empty optional and a number that is not finite become null.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -110,8 +110,8 @@ struct PairColumns {
 };
 
 /// Returns the colliding pairs in the format of verify/certificate/pair_list.h, sorted, each once.
-/// If an object is tested against itself, colliding neighbours are included. The columns of
-/// `columns` come last.
+/// If an object is tested against itself, colliding neighbours are included. The columns that
+/// `columns` adds come last.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
 /// Passes the text of pairs_csv() to `sink` part by part, so that the whole text is never in
 /// memory. The parts are made on all cores.
@@ -139,8 +139,8 @@ std::string decision_of(const Stage& stage);
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// Return the distances as CSV: the names of the columns; a row for each pair. Each row begins with
-/// `before`.
+/// Return the first line of a CSV of distances, with the names of the columns; and a row for each
+/// distance. Each row begins with `before`.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
@@ -161,7 +161,7 @@ struct ClashComparison {
   std::vector<Gone> gone;        // rows of the CSV that the record lacks
   std::uint64_t unexamined = 0;  // number of rows of the CSV whose pair was not examined
 };
-/// text: the CSV; name: the name of its file. Throws Error if clash_csv() cannot have written it.
+/// text: the CSV; name: the CSV's file. Throws Error if clash_csv() cannot have written the text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name);
 

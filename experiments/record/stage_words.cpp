@@ -1,4 +1,4 @@
-// The words of kinds are in a table; the words of reasons and steps are in switches.
+// Words for stages. A table has the words for kinds; switches have those for reasons and steps.
 #include "experiments/record/stage_words.h"
 
 #include <array>

@@ -329,8 +329,8 @@ class Drawer:
         lowest.set_xlabel(panel.x.label if labelled[0] else "")
 
     def names(self, ax, panel):
-        """Writes the name of each point beside the point. Names of points near 0 are written below 0. Each is lower than the name
-        to its left, so that no leader line crosses a name. The x axis starts so far left that all names fit."""
+        """Writes the name of each point beside the point. Names of points near 0 are written below 0. Each such name is lower
+        than the name to its left, so that no leader line crosses a name. The x axis starts so far left that all names fit."""
         points = sorted((s.x[0], s.y[0], s.name) for s in panel.series)
         near, last, (low, high) = [p for p in points if p[1] < 10], 0, map(math.log, ax.get_xlim())
         heights = []

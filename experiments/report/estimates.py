@@ -22,9 +22,9 @@ class Estimate:
 
 
 def holds_again(n, cut):
-    """Returns the probability that the median of n new runs lies between run cut + 1 and run n - cut of n old runs, sorted by
-    time. Every order of old and new runs is equally likely. The new median is new run number `middle`. It is below old run
-    cut + 1 if at most `cut` old runs come before it."""
+    """Returns the probability that the median of n new runs lies between two of n old runs: the (cut + 1)-th fastest and the
+    (cut + 1)-th slowest. Every order of the 2 n runs is equally likely. The median is the `middle`-th fastest new run. The
+    median lies below these two old runs if at most `cut` old runs are faster than the median."""
     middle = -(-n // 2)
     below = sum(math.comb(middle - 1 + i, i) * math.comb(2 * n - middle - i, n - i) for i in range(cut + 1))
     return 1 - 2 * below / math.comb(2 * n, n)
@@ -32,7 +32,7 @@ def holds_again(n, cut):
 
 @functools.lru_cache(maxsize=None)
 def cut_of(n):
-    """Returns how many runs the interval of a median leaves out at each end. It is the largest number for which the median
+    """Returns how many runs the interval of a median leaves out at each end: the largest number for which the median
     of n new runs lies in the interval with at least 95 % probability; 0 if there is no such number."""
     return max((cut for cut in range(n // 2) if holds_again(n, cut) >= 0.95), default=0)
 
@@ -45,8 +45,8 @@ def median_estimate(values, rounds=()):
 
 
 def ratio_estimate(over, under):
-    """Returns the median of the ratios of two runs in the same turn of a round, with its interval; None without ratios. A
-    slowdown in a turn affects both runs, so their ratio hardly changes."""
+    """Returns the median of the ratios over / under, with its interval; None without ratios. A ratio is of two runs in the same
+    turn of a round. A slowdown of the machine in that turn affects both runs, so their ratio hardly changes."""
     rounds = [tuple(a / b for a, b in zip(*both)) for both in zip(over, under)]
     ratios = [ratio for of in rounds for ratio in of]
     return median_estimate(ratios, rounds) if ratios else None
@@ -178,8 +178,8 @@ def share(part, whole):
 
 
 def rate_text(hits, of):
-    """Returns a text such as `0 of 114,014 (95 % bound: at most 2.6e-5)`; with hits, the share and its interval follow. Use it
-    only for cases that were drawn independently, such as random placements; not for pairs, objects or frames of a scene."""
+    """Returns a text such as `0 of 114,014 (95 % bound: at most 2.6e-5)`; with hits, the share and its interval follow.
+    Precondition: the cases were drawn independently. This is true of random placements, but not of pairs, objects or frames."""
     if of == 0:
         return of_all(hits, of)
     rate = rate_of(int(hits), int(of))

@@ -1,26 +1,26 @@
 """The parts of a chapter of the report, and functions on the rows of its study.
 
 How to write a chapter. The file chapters/NAME.py (dashes become underscores) is the chapter of the study NAME, and has one
-function `fill(chapter, study)`, which returns nothing. The fill() of this file calls it:
+function `fill(chapter, study)`, which returns nothing. The fill() of frame.py calls this function with two arguments:
 
 - `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)` and
   `chapter.find_broken(text)` (broken promises, which the report puts first), and Figure, Table, Picture and files to their
   lists. In text, put `backticks` around commands.
-- `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid. `study.all_rows` also has the rows that
-  say in `left_out` why nothing was measured; `study.points` is the whole grid. The columns are
+- `study.rows` is a pandas DataFrame of the measured rows, in the order of the grid. `study.all_rows` also has rows of
+  points that were not measured; their column `left_out` says why. `study.points` is the whole grid. The columns are
     - each axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, "" where they do not
       apply), resolution (0: none), frame (-1: none), seed (0: none);
     - each count, by its name, or NAME_count if an axis has that name; NaN if the row has none;
-    - each time, as NAME_ms ("total_ms"); `runs`, a tuple of the times of the runs, perhaps empty; and `rounds`, the same with
-      a tuple for each round, which is empty if the round is void;
+    - each time, as NAME_ms ("total_ms"); `runs`, a tuple of the times of the runs, perhaps empty; and `rounds`, a tuple of
+      such tuples, one for each round; the tuple of a void round is empty;
     - `contestant`: the method as figures and tables name it ("FAR (OBB)").
 - Read columns that a store may lack by `column(rows, name)`, `total(rows, name)`, `value(row, name)`; a row is one of
   `rows.itertuples()`, with columns as attributes.
 - Format numbers with estimates.py (all of its names are here too), never by hand.
 
 farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with. chapters/devices.py is no
-chapter: its `fill(chapter, study, device, others)` adds the results of further devices to any chapter; others are pairs of a
-device's name and its Study.
+chapter: its `fill(chapter, study, device, others)` adds the results of further devices to any chapter; `others`: pairs of
+a device's name and its Study.
 
 chapters/offsets.py is a short example. A figure should have at most six series a panel; its `n` states the size of its
 sample, and its caption and title say what it shows. Zeros on a logarithmic axis need Axis(..., zero=True), and are then drawn
@@ -234,12 +234,12 @@ def value(row, name):
 
 
 def flag(row, name):
-    """Returns true if the row has a count of this name and the count is true."""
+    """Returns true if the row's value in the column `name` is True."""
     return getattr(row, name, False) is True
 
 
 def text(row, name):
-    """Returns a value that is a text; "" if the row has no such text."""
+    """Returns the value of a row in the column `name` if the value is a string; else ""."""
     out = getattr(row, name, "")
     return out if isinstance(out, str) else ""
 
@@ -436,8 +436,8 @@ def add_broken(chapter, rows):
 
 
 def add_promises(chapter, study):
-    """Adds a finding for each row that broke a promise. If no row did, adds how many pairs and points could have been missed.
-    Reports rows that promise but lack the count separately."""
+    """Adds a finding for each row that broke a promise. If no row broke a promise, adds how many pairs and points were tested.
+    Adds how many rows have a promise but no count of misses."""
     rows = promising(study.rows)
     lost = pd.Series([failures(row) for row in rows.itertuples()], rows.index, float)
     silent, known = int(lost.isna().sum()), rows[lost.notna()]
@@ -468,8 +468,8 @@ def same_pixels(rows, row):
 
 
 def at_risk(rows, row):
-    """Returns how many pairs are lost with 0.9 of the radius, and how many without a ball (radius 0), in the same scene, views
-    and pixels. NaN: not known. If FAR was not run with radius 0, the second number is the count of CULLIDE."""
+    """Returns how many pairs FAR loses with 0.9 of the radius, and how many with radius 0 (no ball), in the scene, views and
+    pixels of the row. NaN: not known. If FAR was not run with radius 0, the second number is how many pairs CULLIDE lost."""
     if row.method != "far":
         return NONE, NONE
     here = same_pixels(rows, row)
@@ -503,21 +503,21 @@ def risk_text(rows, pairs):
 
 
 def culled_shares(rows):
-    """Returns the per cent of all triangles that boxes culled, and the per cent that views culled. If an object is tested against
-    itself, FAR also keeps triangles that boxes left to no view, for pairs in one patch. These count as left by boxes."""
+    """Returns how many per cent of all triangles boxes culled, and how many per cent views culled. If an object is tested against
+    itself, FAR keeps some triangles without any view, for pairs in one patch. Such triangles count as left by boxes."""
     triangles, kept = total(rows, "triangles"), total(rows, "kept_triangles")
     left = int(np.fmax(column(rows, "left_by_boxes"), column(rows, "kept_triangles")).sum())
     return share(triangles - left, triangles), share(left - kept, triangles)
 
 
 def without_size(row):
-    """Returns the contestant's name without the size of triangles. The size only chose the resolution."""
+    """Returns the contestant's name without " @SIZE". SIZE, a size of triangles, only determined the resolution."""
     return contestant(row._replace(method=row.method.split(" @")[0]))
 
 
 def add_kept(chapter, rows, pairs):
-    """Adds a finding that the rows missed nothing. Rows in which views decided could have lost the pairs at risk. Rows in which
-    boxes alone decided could not have lost a pair, and are reported separately."""
+    """Adds findings that the rows missed nothing. One is about rows in which views decided; these could have lost the pairs at
+    risk. Another is about rows in which boxes alone decided; these could not have lost a pair."""
     used = column(pairs, "views_used")
     for runs, words in ((pairs[used > 0], " in which views decided"), (pairs[used == 0], " in which boxes alone decided"),
                         (pairs[used.isna()], "")):

@@ -140,7 +140,7 @@ class SceneFile {
   }
 
   // Returns the pairs of ignored objects. Precondition: `scene` has the objects of the file. Only
-  // their names are used.
+  // the names of these objects are used.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
                                        UnknownName lacking = UnknownName::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
@@ -401,8 +401,8 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// Returns the names of objects. Each name is the name of the file without its extension. The folder
-// is added if another file has the same name.
+// Returns a name for the object of each mesh file: the file's name without its extension. If
+// several files have the same name, their folders are added.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
   std::map<std::string, std::set<std::string>> called;  // the paths, by the name without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);

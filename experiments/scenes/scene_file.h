@@ -117,11 +117,11 @@ using TakePart = std::function<void(Scene& part)>;
 /// Calls take() with one part after the other. Together the parts have the objects, names,
 /// triangles and coordinates of load_scene(arguments), in the same order. Only the indices of
 /// vertices start at 0 in each part. A part is a mesh file, an object of a scene file, or some
-/// objects of the built-in scene `field`; any other built-in scene is a single part. Memory: the
-/// largest part with its file, up to 256 MiB of meshes that a scene file may name again, and the
-/// names of objects. Returns the pairs of objects that the scene file ignores, by their numbers in
-/// the whole scene; the parts have no ignored pairs. Throws Error as load_scene() does, perhaps
-/// after some parts. Passes on exceptions of take(). Precondition: `ignore` is not given.
+/// objects of the built-in scene `field`; any other built-in scene is a single part. Needs memory
+/// for the largest part with its file, for up to 256 MiB of meshes that a scene file may name
+/// again, and for the names of objects. Returns the pairs of objects that the scene file ignores,
+/// by numbers in the whole scene; parts have no ignored pairs. Throws Error as load_scene() does,
+/// perhaps after some parts. Passes on exceptions of take(). Precondition: `ignore` is not given.
 std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const TakePart& take);
 
 // Scenes as files (write_scene.cpp): a mesh for each object, and a scene file that names the
@@ -135,11 +135,11 @@ struct WrittenScene {
 };
 
 /// Writes each object as NAME.off, with the vertices that the object uses. Then writes scene.json;
-/// loading it gives a scene with the same scene_hash(). NAME is the object's name, with '-' for
-/// everything but letters, digits, '.' and '-'. A number is added if two names are equal. Creates
-/// `folder`, but not its parents, if it does not exist; replaces existing files. If the system
-/// refuses a path, removes the new files and throws Error naming the path. Precondition: every
-/// object has a triangle.
+/// loading this file gives a scene with the same scene_hash(). NAME is the object's name, with '-'
+/// for everything but letters, digits, '.' and '-'. If two names are equal, a number is added.
+/// Creates `folder`, but not its parents, if it does not exist; replaces existing files. If the
+/// system refuses a path, removes the new files and throws Error naming the path. Precondition:
+/// every object has a triangle.
 WrittenScene write_scene(const Scene& scene, const std::string& folder);
 
 }  // namespace farcull

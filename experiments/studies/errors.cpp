@@ -217,7 +217,7 @@ void add_against_itself(std::vector<Point>& out, const PointScene& scene, int re
 }
 
 // The values of a family range from harmless to extreme. There are more values near the value at
-// which CULLIDE begins to fail. `offset` and `scale` have more values where floats begin to fail.
+// which CULLIDE begins to fail. "offset" and "scale" also have more where floats begin to fail.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;

@@ -109,7 +109,7 @@ PointResult measure_offsets(const Point& of, MeasurementContext& lab) {
 
 // ---- "precision" and "radius" ----
 
-// The native canvas with a depth buffer of 16-bit fixed point. It has no run(). depths() rounds the
+// The native canvas with a depth buffer of 16-bit fixed point. run() throws. depths() rounds the
 // nearest or farthest depth of each pixel. Rounding is monotone, so the result equals the nearest
 // or farthest of the rounded depths.
 class CoarseCanvas final : public Canvas {

@@ -222,15 +222,17 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
   }
 }
 
-// 1. Let n be the unit normal of an edge, at the angle t from a diagonal. Snapping to multiples
-//    of g moves the edge inward by at most g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
-// 2. Let q be the contact relative to the nearest corner of the pixels. A triangle's rectangle
-//    reaches at least sqrt(1/2) beyond the contact. So the rectangle loses the pixel centre on this
-//    diagonal only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
+// Derives the limits of CornerStratum, in pixels. Corners are snapped to multiples of g.
+// 1. Let n be the unit normal of an edge of a triangle's rectangle, at the angle t from a diagonal
+//    of the pixels. Snapping moves the edge inward by at most
+//    g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
+// 2. Let q be the contact relative to the nearest corner of the pixels. The rectangle reaches at
+//    least sqrt(1/2) beyond the contact. So the rectangle loses the pixel centre on this diagonal
+//    only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
 // 3. A pair is missed only if each of the four centres around the corner is lost by one of the two
 //    triangles. Suppose that each triangle loses two opposite centres. Then step 2 holds for n and
-//    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. All such pairs of
-//    strips lie in |q.x| + |q.y| < c. Here c (corner_px) is the largest value with
+//    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. If q is in both
+//    strips, then |q.x| + |q.y| < c. Here c (corner_px) is the largest value with
 //    c (cos(t) - sin(t)) = (1 + g) cos(t) - 1 for some t.
 // 4. If the triangles lose the centres in another way, the sum of their two bounds in step 2 is
 //    positive. Then each angle t is at most sqrt(2) times as large as in step 3. From 8 bits on,

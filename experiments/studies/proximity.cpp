@@ -80,8 +80,8 @@ constexpr int kMostInDiagrams = 400;   // most objects in a scene for which diag
 constexpr int kRuns = 3 * kRounds;     // nine runs, as in the study "scaling"
 constexpr int kSeeds = 3;              // seeds of each scene of clusters
 
-// Adds the two diagrams at each resolution, and the methods without cells. unwidened: adds the
-// reliable diagram with widening 0, which may lose objects.
+// Adds points for both Voronoi diagrams at each resolution, and for the methods without cells.
+// unwidened: true to add the reliable diagram with widening 0, which may lose objects.
 void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
     out.emplace_back(NeighbourPoint{scene, method});
@@ -133,8 +133,8 @@ void add_motion(bool quick, std::vector<Point>& out) {
   static const std::vector<std::string> full = {"crowd:100", "cylinders:30", "field:4000",
                                                 "tree-leaves:60"};
   static const std::vector<std::string> few = {"crowd:30", "cylinders:8"};
-  // At least six frames. The range of fewer frames contains the median with less than 95 %
-  // probability.
+  // There are at least six frames. The range of fewer frames contains the median with less than
+  // 95 % probability.
   const long frames = quick ? 6 : 12;
   for (const std::string& name : quick ? few : full) {
     for (long frame = 0; frame < frames; ++frame) {

@@ -99,7 +99,7 @@ Scene clusters(const ClusteredScene& wanted) {
   return scene.finish();
 }
 
-// The scene of ContactCells: contacts that depend on a number, from a harmless value to an extreme.
+// The scene of ContactCells: contacts that depend on a number, which may be harmless or extreme.
 // Cell (i, j) lies at (i, j, i + j modulo side), so that in each of the views x, y and z every cell
 // has pixels of its own. A unit is a pixel, and corners of pixels are at whole numbers in all three
 // views. Every six consecutive cells are
@@ -329,7 +329,7 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
     different += (different.empty() ? "" : ", ") + text;
   };
   if (first.device != other.device) add("device " + first.device + " and " + other.device);
-  // For each name of a count, its values in the two runs; "none" if a run lacks the count.
+  // Maps the name of a count to its values in the two runs; "none" if a run lacks the count.
   std::map<std::string, std::pair<std::string, std::string>> values;
   const auto at = [&](const std::string& name) -> auto& {
     return values.try_emplace(name, "none", "none").first->second;

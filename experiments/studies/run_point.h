@@ -35,11 +35,11 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
 /// Returns the device of the run, as in PointResult::device.
 std::string answered(const Record& record);
 
-/// Opens the scene and runs the point's method on it once. A run does not depend on earlier runs in
-/// `lab`, so I-COLLIDE starts without sorted lists. A MotionFrame is an exception: I-COLLIDE uses
-/// the lists of the previous frame. A second run of the same frame would use this frame's own
-/// lists, so `repeat` must be 1 for a MotionFrame (else std::logic_error). Throws Error as run()
-/// does. The counts are RunCounts without `fragments`. record: receives the run; may be null.
+/// Opens the scene and runs the point's method on it once. For a MotionFrame, I-COLLIDE starts with
+/// the sorted lists of the previous frame. Any other run does not depend on earlier runs in `lab`.
+/// A second run of a MotionFrame would start with the lists of the same frame, so `repeat` must be
+/// 1 for a MotionFrame (else std::logic_error). Throws Error as run() does. The counts are
+/// RunCounts without `fragments`. record: receives the record of the run; may be null.
 PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* record = nullptr);
 inline PointResult measure_run_point(const Point& point, MeasurementContext& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
@@ -72,8 +72,8 @@ void require_same(const PointKey& point, const PointResult& first, const PointRe
 /// device can draw. The counts are LemmaCounts. Throws Error for faults of the device.
 PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab);
 
-// Potential neighbours and distances of the study "proximity". The exact answers of a scene are
-// those of `farcull distance`. They are used only after the accounting
+// The next functions measure potential neighbours and distances for the study "proximity". The
+// exact answers of a scene are those of `farcull distance`. They are used only after the accounting
 // (verify/distance_accounting.h) decided every pair of triangles and found no nearer pair. The
 // accounting shares no code with the search.
 
@@ -108,17 +108,17 @@ struct Fragments {
 /// fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
-// Measures how often FAR misses a pair at a radius, on many pairs of small patches that meet at
-// random places. A patch is a few neighbouring triangles of a built-in scene, scaled and turned at
-// random. A scene holds thousands of placements. In each of the views x, y and z every placement
-// has pixels of its own, so that one run of FAR decides them all.
+// The next functions measure how often FAR misses a pair at a radius, on many pairs of small
+// patches that meet at random places. A patch is a few neighbouring triangles of a built-in scene,
+// scaled and turned at random. A scene holds thousands of placements. In each of the views x, y and
+// z every placement has pixels of its own, so that one run of FAR decides them all.
 
 constexpr std::uint32_t kPatchTriangles = 8;
 
-/// The placements of one scene. Its first object has the first patch of each placement, and its
-/// second object the second patch, in the order of the placements. A patch has kPatchTriangles
-/// triangles, and a unit is about a pixel. If PlacementPoint::pairs is set, a patch is one
-/// triangle, a unit is exactly a pixel, and points at two corners fix the window.
+/// The placements of one scene. The scene's first object has the first patch of each placement, and
+/// the second object has the second patch, in the order of the placements. A patch has
+/// kPatchTriangles triangles, and a unit is about a pixel. If PlacementPoint::pairs is set, a patch
+/// is one triangle, a unit is exactly a pixel, and points at two corners fix the window.
 struct PlacedPatches {
   Scene scene;
   std::uint64_t placements = 0;

@@ -139,9 +139,9 @@ std::string lacking(const PointKey& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// Estimates the seconds that are left. A visit is assumed to take the mean time of this run's
-// visits to the same study. If that study had no visit yet, the mean is over the visits to all
-// studies.
+// Estimates the seconds that are left. A visit (Task::visits) is assumed to take the mean time of
+// this run's visits to the same study. If that study had no visit yet, the mean is over the visits
+// to all studies.
 std::optional<double> remaining(const std::vector<Task>& tasks) {
   double seconds = 0;
   std::size_t visits = 0;
@@ -250,8 +250,8 @@ class Runner {
       }
     }
   }
-  // Keeps a row for other studies. Frames of a motion are not kept, since they may depend on
-  // earlier frames.
+  // Keeps a row for other studies. Does not keep rows of frames of a motion, since these rows may
+  // depend on earlier frames.
   void know(const PointKey& key, const Measurement& row, bool plain) {
     if (key.frame >= 0 || !row.left_out.empty()) return;
     if (rounds_in(row).value_or(0) > 0) {
@@ -295,7 +295,7 @@ class Runner {
   }
 
   // Returns the point's row if there is one. Otherwise returns a row with the counts of the point
-  // in another study, or measures the counts now. Empty if this measurement failed.
+  // in another study, or measures the counts now. Returns nothing if this fails.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;

@@ -120,8 +120,7 @@ struct StudiesSummary {
 /// - another process measures times;
 /// - the store has rows of a study, and `resume` is not set;
 /// - the store has rows of another commit of farcull, another device, other CPU features, or
-/// another
-///   version of a library.
+///   another version of a library.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

@@ -112,11 +112,11 @@ class Store {
   std::unique_ptr<State> state_;
 };
 
-/// DIR/results.sqlite, or DIR/results-K-of-N.sqlite for a shard.
+/// Returns FOLDER/results.sqlite, or FOLDER/results-K-of-N.sqlite for shard K of N.
 std::string store_path(const std::string& folder, int shard = 1, int of = 1);
 
-/// DIR/on-DEVICE: the folder for the results on another device, with its own store. Throws Error
-/// naming --devices if that is no valid file name.
+/// Returns FOLDER/on-DEVICE, the folder for the store of results on this device. Throws Error
+/// naming --devices if on-DEVICE is no valid file name.
 std::string device_folder(const std::string& folder, const std::string& device);
 
 }  // namespace farcull

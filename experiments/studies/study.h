@@ -124,8 +124,8 @@ struct LemmaCounts {
 /// - the distance |x| + |y| of the contact from a corner of the pixels is at most corner_px, and
 /// - the rectangles of both triangles are turned from a diagonal of the pixels by at most the angle
 /// whose cosine is corner_cosine.
-/// placements.cpp derives the two limits. The probability is the sum over the views: 3 * 2
-/// corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
+/// placements.cpp derives the two limits. The stratum's probability, the sum over the views, is
+/// 3 * 2 corner_px^2 (acos(corner_cosine) / 45 degrees)^2.
 struct CornerStratum {
   double corner_px = 0, corner_cosine = 0;
   FARCULL_FIELDS(corner_px, corner_cosine)
@@ -305,8 +305,8 @@ struct Study {
   /// True if RunPoints have exactly the counts of measure_run(). Then studies can share their rows.
   bool plain = false;
   /// True for a campaign, which is not part of `all`. It takes many hours, needs what most machines
-  /// lack, or has its own page of results. It may alternate between its scenes, so that an early
-  /// stop has results for all of them.
+  /// lack, or has its own page of results. It may alternate between its scenes, so that there
+  /// are results for all scenes if it ends early.
   bool campaign = false;
 };
 

@@ -178,8 +178,8 @@ std::vector<Case> cases(bool quick) {
     out.push_back({std::move(scene), resolution, drawn});
   };
   // Each plot has at least six sizes, so that a fitted exponent has a confidence interval.
-  // Time against the number of objects of about the same size, in a box that grows with that
-  // number.
+  // First plot: time against the number of objects. The objects have about the same size, in a box
+  // that grows with their number.
   for (const int n :
        quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
     add(fmt::format("crowd:{}", n), kUsual, true);
@@ -187,12 +187,12 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
   }
-  // Time against density. Denser objects collide more often.
+  // Second plot: time against density. Denser objects collide more often.
   const int objects = quick ? 20 : 100;
   for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
   }
-  // Time against the number of polygons: six tori with more and more triangles.
+  // Third plot: time against the number of polygons, for six tori with more and more triangles.
   for (const int n :
        quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
     add(fmt::format("torii:{}", n), kUsual, true);
@@ -208,8 +208,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// Nine runs. Their range contains the median of another nine runs with a probability of 95 %. With
-// fewer runs the probability is lower (docs/experiments.md, "Statistics").
+// A point has nine runs. Their range contains the median of another nine runs with a probability of
+// 95 %. With fewer runs the probability is lower (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
 std::vector<RunPoint> points_of(const Case& c) {
@@ -240,8 +240,8 @@ Study culling_study() {
 Study efficiency_study() {
   const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    // At least six frames. The range of fewer frames contains the median with a probability below
-    // 95 %.
+    // There are at least six frames. The range of fewer frames contains the median with a
+    // probability below 95 %.
     const long frames = choice.quick ? 6 : 12;
     for (const MovingCase& moving : moving_cases(choice.quick)) {
       for (long frame = 0; frame < frames; ++frame)

@@ -116,7 +116,7 @@ Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
 HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS, or card. fields: the fields after the kind. family: `ask` counts early ends per family.
+# kind: one of KINDS, or card. fields: the fields after the kind. family: ask() counts for each family how often a process died.
 Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
 
 FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
@@ -131,8 +131,8 @@ def number(text, kind=float):
 
 
 def parse(kind, fields, so_far):
-    """Reads the fields of one line of an answer. Returns the Answer if it is the last line; `ns` is empty if the line has no
-    time. Adds other lines to `so_far`. Raises ValueError for a line that the grammar does not have."""
+    """Reads the fields of one line of an answer. Returns the Answer if this is its last line; `ns` is empty if the line has
+    no time. Adds other lines to `so_far`. Raises ValueError for a line that the grammar does not have."""
     word, *rest = fields
     if word == 'refused' and rest:
         return Answer('refused', None, 0, ' '.join(rest)[:160])
@@ -321,7 +321,7 @@ def point_to_triangle(p, t):
 
 def segment_to_segment(e, f):
     """Returns the square of the distance of two segments. The differences of their points form a parallelogram of two
-    triangles. The distance is that of the origin from these triangles."""
+    triangles. The distance of the segments is that of the origin from the parallelogram."""
     d = [[minus(p, q) for q in f] for p in e]
     return min(point_to_triangle([0, 0, 0], [d[0][0], corner, d[1][1]]) for corner in (d[0][1], d[1][0]))
 
@@ -483,7 +483,7 @@ def questions_of(kind, family, suite, lines):
 
 
 def lists_of(card, suite, kinds):
-    """Yields kinds with the lines that one process gets. For pairs, each list has its own process. All questions of any
+    """Yields a kind and the lines that one process gets. For pairs, each list has its own process. All questions of any
     other kind share a process: they are few, and starting a process takes longer than most of them."""
     for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
@@ -532,10 +532,10 @@ def score_distance(label, numbers, value, row):
         def exact(corners):
             return [[Fraction(x) for x in corner] for corner in corners]
 
-        # The permitted error of a point: a part of the size, but at least the distance of neighbouring doubles.
+        # The permitted error of a point: a fraction of the size, but at least the distance of neighbouring doubles.
         near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)
         points = exact([points[:3], points[3:]])
-        # Each point may be off by `near`, and the distance by OFF. Points near their triangles cannot be closer than these.
+        # The largest permitted distance of the two points. Each may be off by `near`, and the distance by the factor 1 + OFF.
         most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
         row['points'] += 1
         row['points off'] += square(minus(*points)) > most ** 2 or any(
@@ -577,7 +577,7 @@ def ask_family(command, card, suite, names, options):
 
 
 def rows_of(command, card, suite, kinds, options):
-    """Returns a row for each kind of question, family, parameter and label. For meshes, the name replaces the label."""
+    """Returns a row for each kind of question, family, parameter and label. For meshes, the mesh name replaces the label."""
     rows = {}
     for kind, listed in lists_of(card, suite, kinds):
         answers, differs = ask_twice(command, [one.question for one in listed], options)

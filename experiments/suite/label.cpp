@@ -180,7 +180,7 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
   // The relative interior of a triangle is the triangle without its edges. A degenerate triangle (a
-  // segment) has only edges. So a single common point is here in the other triangle's interior.
+  // segment) has only edges. So here a single common point is inside the other triangle.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
@@ -271,8 +271,8 @@ SuiteQuestion about(SuiteQuestionKind kind, const SuiteMesh& mesh,
   return out;
 }
 
-/// Returns whether the object meets itself. Empty if two of its vertices are at one position, since
-/// triangles may then be neighbours by position, but not by index.
+/// Returns whether the object meets itself; nothing if two of its vertices are at one position,
+/// since triangles may then be neighbours by position, but not by index.
 std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   try {
     return !decide_mesh(scene, where).empty();

@@ -26,7 +26,7 @@ struct SuiteIndex {
   std::string sum;          // SHA-256 of all lines but the last; identifies the suite
 };
 
-/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the sum does not fit the lines.
+/// Reads size, seed and sum of FOLDER/suite.txt. Throws Error if the sum is not that of the lines.
 /// Does not check the listed files; ask.py checks these.
 SuiteIndex read_suite(const std::string& folder);
 

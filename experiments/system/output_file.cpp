@@ -1,5 +1,5 @@
-// Writes a new file beside the path and renames it. Signal handlers allocate no memory and take no
-// lock.
+// Writes a new file beside the path and renames the file. Signal handlers allocate no memory and
+// take no lock.
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
@@ -273,7 +273,7 @@ GrowingOutput::~GrowingOutput() {
   try {
     finish();
   } catch (const Error&) {
-    // A destructor must not throw. A regular file has its end already; only a stream may lack it.
+    // A destructor must not throw. Only a stream may lack its end; a regular file has its end.
   }
   if (file_ >= 0) ::close(file_);
 }

@@ -14,9 +14,9 @@
 
 namespace farcull {
 
-/// Throws Error naming the path if write_output() would certainly fail: no such folder, a
-/// directory, no permission, a name or path that is too long, a closed standard output. Call it
-/// before a long run, so that the run does not fail at its end.
+/// Throws Error naming the path if write_output() would certainly fail: the folder is missing, the
+/// path is a directory or too long, a permission is missing, or standard output is closed. Call
+/// check_output() before a long run, so that the run does not fail at its end.
 void check_output(const std::string& path);
 
 /// Writes the text to a new file beside the path, and renames the new file to the path. "-" is
@@ -28,7 +28,7 @@ void write_output(const std::string& path, const std::string& text);
 
 /// Receives the parts of a text in order.
 using TextSink = std::function<void(std::string_view)>;
-/// Writes a long text in the same way: `write` passes the text to the given sink part by part. If
+/// Like the function above, for a long text: `write` passes the text part by part to a sink. If
 /// `write` throws, the exception is passed on, and an existing file stays as it was.
 void write_output(const std::string& path, const std::function<void(const TextSink&)>& write);
 

@@ -16,9 +16,9 @@ namespace farcull {
 /// everywhere.
 std::size_t text_columns(std::FILE* stream = stdout);
 
-/// Breaks lines at blanks, so that each has at most `columns` characters if its words allow it. A
-/// continuation line is indented to where the text of its line begins: after leading blanks, and
-/// after a label followed by two blanks. The indentation is at least `indent`.
+/// Breaks lines at blanks, so that each line has at most `columns` characters if its words allow
+/// it. A continuation line is indented to where the text of its line begins: after leading blanks,
+/// and after a label followed by two blanks. The indentation is at least `indent`.
 std::string wrapped(const std::string& text, std::size_t columns = text_columns(),
                     std::size_t indent = 0);
 

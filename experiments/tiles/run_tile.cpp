@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t kSample = 65536;
 
-// Samples the boxes of triangles. The sample holds the triangles whose hashed number ends with a
-// certain number of zero bits. This number of bits grows by one whenever the sample becomes too
-// large. So the sample depends only on the scene, not on the parts in which the scene is read.
+// Samples the boxes of triangles. The sample holds the triangles whose hashed number ends with at
+// least k zero bits. k grows by one whenever the sample becomes too large. So the sample depends
+// only on the scene, not on the parts in which the scene is read.
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
@@ -87,7 +87,7 @@ class Loads {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMost = std::size_t{1} << 31;  // limit of triangles and objects in a tile
 
-// Collects the triangles of one tile. Renumbers vertices part by part: parts share no vertex.
+// Collects the triangles of one tile. Renumbers vertices part by part, as parts share no vertex.
 class Gathering {
  public:
   Gathering(const Census& census, const Tile& tile)
@@ -121,8 +121,8 @@ class Gathering {
                 "do not change its files while a run reads them");
   }
 
-  // Throws Error if an object has another size than at the first reading of the scene. The hash
-  // already includes the sizes of the first reading (begun_hash()).
+  // Throws Error if an object has another size_word() than at the first reading of the scene. The
+  // hash already includes the words of the first reading (begun_hash()).
   void require_known(const Object& object) {
     if (series_ == census_.sizes.size() || census_.sizes[series_].first != size_word(object))
       changed();
@@ -185,8 +185,8 @@ class Gathering {
   std::vector<std::uint32_t> vertex_;  // for each vertex of the part: its number in the tile
 };
 
-// Returns the pairs of objects with the objects' numbers in the part. Leaves out pairs with an
-// object that is not in the part, since the tile has no triangle of that object.
+// Converts pairs of objects from numbers in the whole scene to numbers in the tile's scene. Leaves
+// out pairs with an object that has no triangle in the tile.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);

@@ -28,8 +28,8 @@ namespace farcull {
 /// parts. Returns the pairs of objects that the scene ignores, as stream_scene() does.
 using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 
-/// The result of reading all parts. Memory: the boxes of at most 65,536 triangles, 16 bytes for
-/// each entry of `sizes`, the names, and the ignored pairs.
+/// The result of reading all parts. Needs memory for the boxes of at most 65,536 triangles, for 16
+/// bytes for each entry of `sizes`, for the names, and for the ignored pairs.
 struct Census {
   std::string name;
   std::uint64_t objects = 0, self_objects = 0, triangles = 0;
@@ -50,8 +50,8 @@ struct Census {
 /// Returns an object's number of triangles and `self` in one word, as scene_hash() hashes them.
 std::uint64_t size_word(const Object& object);
 
-/// clearance: two triangles that are at most this far apart count as a pair (world units). names:
-/// whether to keep the names of the objects. An exception of `source` is passed on.
+/// Reads all parts. Two triangles at most `clearance` (world units) apart count as a pair. If
+/// `names`, keeps the names of the objects. Passes on exceptions of `source`.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
 
 /// Returns a scene without triangles that has the names of the objects and the ignored pairs.
@@ -64,9 +64,9 @@ struct Cuts {
 };
 
 /// Returns cuts for this many tiles, by a fixed rule. On each axis, quantiles of the lower ends of
-/// the sample's boxes serve as cuts. The axis whose fullest tile meets the fewest boxes of the
-/// sample is chosen. In a tie it is the axis with the smallest sum over all tiles, and in another
-/// tie the first axis. Only time and memory depend on the cuts. Precondition: tiles >= 1.
+/// the sample's boxes serve as cuts. Chooses the axis whose fullest tile meets the fewest boxes of
+/// the sample. Breaks a tie by the smallest sum over all tiles, and then by the order of the axes.
+/// Only time and memory depend on the cuts. Precondition: tiles >= 1.
 Cuts choose_cuts(const Census& census, std::size_t tiles);
 
 /// Returns a text such as "x from 1.5 to below 3".
@@ -93,10 +93,10 @@ struct TileScene {
 };
 
 /// Reads all parts of the scene and keeps the triangles that meet the tile at the clearance of the
-/// census. So both triangles of each pair that belongs to the tile are kept. Memory O(largest part
-/// + triangles that meet the tile). Throws Error naming the scene if an object's number of
-/// triangles or `self` differs from the census, or if the triangles and objects that meet the tile
-/// are 2^31 or more. An exception of `source` is passed on.
+/// census. So both triangles of each pair that belongs to the tile are kept. Needs memory for the
+/// largest part and for the kept triangles. Throws Error naming the scene if an object's number of
+/// triangles or `self` differs from the census, or if there are 2^31 or more kept triangles
+/// or objects. Passes on exceptions of `source`.
 TileScene gather_tile(const SceneSource& source, const Census& census, const Tile& tile);
 
 /// Describes the whole scene, of which `part` is one tile, for certificates. `part` must outlive
@@ -125,9 +125,9 @@ struct TileRun {
 };
 
 /// Reads the scene twice and finds the pairs that belong to the tile. The same scene, options and
-/// number of tiles give the same cuts for every tile. Memory: O(largest part), plus that of a run
-/// on the triangles that meet the tile. Throws Error as gather_tile(), plan() and find() do. Throws
-/// std::logic_error if the options have another method than `boxes`, or a limit.
+/// number of tiles give the same cuts for every tile. Needs memory for the largest part of
+/// `source`, and for a run on the tile's triangles. Throws Error as gather_tile(), plan() and
+/// find() do. Throws std::logic_error if the options have another method than `boxes`, or a limit.
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
                  const Progress& progress = {});
 
@@ -166,9 +166,9 @@ struct MergedTiles {
 
 /// Reads the records and lists that `farcull run --tiles K/N --json FILE --pairs LIST` wrote.
 /// Writes the list of the whole scene to `out`, byte for byte as a single run writes it. `out`
-/// appears only after all lists were read to their ends and found complete. The lists are merged
-/// while they are read, so the memory is that of the records and a buffer for each list. Throws
-/// Error naming the file if
+/// appears only after all lists were read to their ends and found complete. Merges the lists while
+/// reading, so memory is needed only for the records and a buffer for each list. Throws Error
+/// naming the file if
 /// - a record or a list is missing, is another kind of file, or was cut short or changed;
 /// - a tile is given twice or not at all, or the tiles do not hold all triangles of the scene;
 /// - two records differ in scene, number of tiles, cuts, options, columns or commit;

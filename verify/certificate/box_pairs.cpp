@@ -26,9 +26,9 @@ BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The tree divides at the median of the centres, along the axis in which they spread most. The
-// choice changes only the time of a query, not its answer: a query visits the children of every
-// node whose box overlaps its own box.
+// The tree divides at the median of the centres, along the axis in which they spread most. Other
+// divisions would change only the time of a query, not its answer: a query visits the children of
+// every node whose box overlaps the box of the query.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;
@@ -74,8 +74,8 @@ BoxPairs::BoxPairs(const Scene& scene, double clearance, const Tile& tile)
   if (count > 0) tree_.add(0, count);
 }
 
-// If x and y do not meet, no boxes inside x and y meet: rounding is monotone, so rounded gaps
-// between the inner boxes are at least as large.
+// If x and y do not meet, no box inside x meets a box inside y. Rounding is monotone, so the
+// rounded gaps between the inner boxes are at least as large.
 bool BoxPairs::meet(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const {
   for (int k = 0; k < 3; ++k) {
     if (clearance_ == 0) {

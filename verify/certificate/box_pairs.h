@@ -1,8 +1,8 @@
 // Enumerates the pairs of triangles that a certificate is about, in the certificate's order.
 //
 // This enumeration shares no code with core's join, CGAL's join or the tree of verify/accounting.
-// It takes the triangles in order and finds the partners of each. So it gives the pairs in sorted
-// order without storing or sorting all of them.
+// For each triangle in order, it finds the later triangles that form a pair with this triangle. So
+// the pairs come in sorted order, and need not be stored or sorted.
 #pragma once
 
 #include <array>
@@ -52,18 +52,18 @@ struct BoundsTree {
   std::vector<Node> nodes;
 };
 
-/// Enumerates the pairs of triangles that count and whose closed boxes overlap, sorted by (a, b),
-/// a < b, each once. A pair counts if its triangles are of different objects, or of one object that
-/// is `self`. Boxes overlap if they share a point (touching counts). With a clearance > 0 (world
-/// units, finite), boxes overlap if they are no farther apart than the clearance along any axis, by
-/// differences in double. With a tile, only pairs that belong to the tile are enumerated. Memory
-/// O(triangles). Precondition: validate() accepts the scene. The scene must outlive the object.
+/// Enumerates the pairs of triangles that count and whose closed boxes overlap, sorted by (a, b)
+/// with a < b, each once. A pair counts if its triangles are of different objects, or of one object
+/// that is `self`. Boxes overlap if they share a point (touching counts). With a clearance > 0
+/// (world units, finite), boxes overlap if no gap along an axis, computed in double, is above the
+/// clearance. With a tile, only pairs that belong to the tile are enumerated. Memory O(triangles).
+/// Precondition: validate() accepts the scene. The scene must outlive the object.
 class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene, double clearance = 0, const Tile& tile = {});
 
-  /// Replaces `pairs` by the next pairs: all partners of each next triangle, until there are at
-  /// least `enough` pairs or the scene ends. Returns false, with no pairs, after the last pair.
+  /// Replaces `pairs` by the next pairs: at least `enough`, or all that are left; all pairs (a, b)
+  /// of a triangle a come at once. After the last pair, returns false and empties `pairs`.
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:

@@ -28,9 +28,9 @@
 
 namespace farcull {
 
-/// The pairs that a scene does not ask about: pairs of triangles of one object that is not `self`.
-/// No count of meeting, missed or proved pairs includes these pairs, so a report of such a count
-/// has to state how many they are.
+/// Pairs of triangles of one object that is not `self`. These pairs are not tested, and no count of
+/// meeting, missed or proved pairs includes them. So a report of such a count has to state how many
+/// pairs were not tested.
 struct NotAsked {
   std::uint64_t objects = 0;                         // objects that are not `self`
   std::uint64_t pairs = 0;                           // pairs of two triangles of one such object
@@ -134,13 +134,13 @@ Certificate::Unasked unasked_of(const Scene& scene);
 /// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
 /// the kept pairs that the run found to meet, neighbours included. Each list is sorted, each pair
 /// once, a < b. All pairs count and have overlapping boxes. whole: not null if the run was on a
-/// tile; then all pairs belong to the tile. Throws std::logic_error if the lists are not so.
+/// tile; then all pairs belong to the tile. Throws std::logic_error if a list violates this.
 ///
-/// The certificate repeats errors of the run, so that the check refutes them. A kept pair is
-/// claimed to meet iff it is in `colliding`. list_sha256 is the hash of `colliding`. If the run
-/// calls a pair disjoint and no direction proves it, the pair gets direction 0 if it was kept, and
-/// kMeets if it was culled; kept neighbours get kNeighbours. With a clearance > 0, kept pairs whose
-/// boxes are farther apart than the clearance are left out, since they need no evidence.
+/// If the run made an error, the certificate claims the same, so that the check refutes it. A kept
+/// pair is claimed to meet iff it is in `colliding`. list_sha256 is the hash of `colliding`. If the
+/// run calls a pair disjoint and no direction proves it, the pair gets direction 0 if it was kept,
+/// and kMeets if it was culled; kept neighbours get kNeighbours. With a clearance > 0, kept pairs
+/// whose boxes are farther apart than the clearance are left out, since they need no evidence.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0, const WholeScene* whole = nullptr);
@@ -177,9 +177,9 @@ struct CheckResult {
   double decide_ms = 0;                 // wall clock of the decisions alone
 };
 
-/// Decides in integers every pair of the scene whose boxes overlap, and compares with the claims.
-/// - refuted: a pair meets that the certificate calls culled, or the certificate is wrong about
-///   whether a pair meets. The result names the first such pair.
+/// Decides every pair with overlapping boxes in integers, and compares the answers with the claims.
+/// - refuted: the certificate calls a pair culled that meets, or it is wrong about whether a pair
+///   meets. The result names the first such pair.
 /// - not_proved: no pair refutes the certificate, but the certificate has another fault: it is of
 ///   another scene, the evidence is too short or too long, a count or the hash of the list is
 ///   wrong, or a byte is wrong. A byte is wrong if it has no meaning, if its direction does not

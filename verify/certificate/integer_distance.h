@@ -41,9 +41,9 @@ struct IntegerDistance {
 IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// True iff the distance is more than `length`; with or_as_far, iff it is at least `length`. Looks
-/// for a direction d among the 38 of integer_pair.h whose gap g is long enough: g^2 >
-/// length^2 (d . d), or >= with or_as_far. Unlike integer_distance(), this function constructs no
-/// points.
+/// for a direction d, among the 38 of integer_pair.h, with g^2 > length^2 (d . d), or >= with
+/// or_as_far. g is the gap between the values of d . x on a and on b. Unlike integer_distance(),
+/// this function constructs no points.
 bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Length& length,
                bool or_as_far);
 
@@ -56,8 +56,8 @@ bool is_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const
 /// the box of the other, whose mesh is not closed. unknown: nothing is claimed.
 enum class InsideClaim : std::uint8_t { unknown, none, a, b, not_closed };
 
-/// Answers for one scene, which must not change and must outlive this object. Facts that take long
-/// to compute are stored for each object of the scene.
+/// Decides about pairs of objects of one scene. The scene must not change and must outlive this
+/// object. Facts that take long to compute are stored for each object.
 class IntegerInside {
  public:
   explicit IntegerInside(const Scene& scene);

@@ -9,9 +9,9 @@
 //
 // Triangles are as in verify/exact.h: touching counts, and a degenerate triangle is a segment or a
 // point. docs/certificate.md proves: if the triangles are disjoint, one of the 38 directions
-// separates them; otherwise one of 21 points lies in both. With a clearance: if the triangles are
-// farther apart, one of the 38 directions shows this; otherwise one of 42 pairs of points or one of
-// the 21 points shows that they are not.
+// separates them; otherwise one of 21 points lies in both. With a clearance: if the distance is
+// above the clearance, one of the 38 directions proves this; otherwise one of 42 pairs of points or
+// one of the 21 points proves that it is not.
 #pragma once
 
 #include <array>
@@ -79,7 +79,7 @@ class IntegerPair {
   std::array<std::array<Vec3, 3>, 2> corners_;
   double clearance_;
   std::array<unsigned, 2> shared_{};  // bit i: corner i equals a corner of the other triangle
-  // The corners of a, then of b, relative to the first corner of a. Not set if they are too long.
+  // Corners of a, then of b, relative to a's first corner. Not set if a coordinate is too long.
   std::array<std::array<std::int64_t, 3>, 6> small_;
   int bits_ = 0;  // |difference of two coordinates| < 2^bits_
   std::unique_ptr<Big> big_;

@@ -134,8 +134,8 @@ using BigCorners = Corners<mpz_class>;
 /// integers are members, since allocating GMP's integers anew takes time.
 class PointSearch {
  public:
-  /// Each of these functions constructs a point, and returns false if the point does not exist. The
-  /// point may be outside both triangles.
+  /// corner() and the functions up to foot_on_plane() each construct a point, and return false if
+  /// the point does not exist. The point may be outside both triangles.
   bool corner(const BigCorners& t, int i) {
     point_ = t[i];
     scale_ = 1;

@@ -138,7 +138,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       scale(out.b[i][k], b[i][k], out.exponent);
     }
   }
-  // Directions and gaps depend only on differences of corners. The differences have fewer digits.
+  // Subtracts the first corner of a from all corners. The differences mostly have fewer digits.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
     for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
@@ -162,10 +162,11 @@ struct Fraction {
 
 /// The numerator and the denominator of a squared distance have at most this many decimal digits.
 /// All coordinates of a scene times 2^1074 are integers below 2^2098, and their differences are
-/// below D = 2^2099. In this scale the square of a distance is (w . d)^2 / (d . d), where d is at
-/// most a cross product of two edges. So numerator and denominator are below (6 D^3)^2 < 2^12600.
-/// In world units the denominator has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 <
-/// 2^10548. Division by common factors only shortens both numbers. log10(2^12600) < 3793.
+/// below D = 2^2099. In this scale the square of a distance is (w . d)^2 / (d . d). Here |w_k| < D,
+/// and |d_k| < 2 D^2, as for a cross product of two edges. So numerator and denominator are below
+/// (6 D^3)^2 < 2^12600. In world units the denominator has 2148 bits more: (d . d) 2^2148 < (2
+/// D^2)^2 * 3 * 2^2148 < 2^10548. Division by common factors only shortens both numbers.
+/// log10(2^12600) < 3793.
 constexpr std::size_t kMostDigits = 4000;
 
 /// Returns the square of a length. Precondition: the length is finite and >= 0.

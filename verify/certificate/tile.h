@@ -32,7 +32,7 @@ inline bool holds(const Tile& tile, double at) { return at >= tile.from && at < 
 
 /// True if a triangle may be in a pair that belongs to the tile and whose boxes are at most
 /// `clearance` apart. lo, hi: the ends of the triangle's box on the axis. The difference is rounded
-/// as in box_pairs.h. Rounding is monotone, so this is true for every such triangle.
+/// as in box_pairs.h. Rounding is monotone, so the result is true for every such triangle.
 inline bool meets(const Tile& tile, double lo, double hi, double clearance) {
   return lo < tile.to && tile.from - hi <= clearance;
 }

@@ -1,5 +1,5 @@
-// Opens an EGL device without a window system. Makes its context current for the lifetime of a
-// GlCurrent object.
+// Makes OpenGL contexts on EGL devices, without a window system. A context is current only while a
+// GlCurrent object for it exists.
 #include "core/gl/base/context.h"
 
 #include <epoxy/egl.h>
@@ -47,12 +47,12 @@ bool has_word(const std::string& list, const std::string& word) {
   return (" " + list + " ").find(" " + word + " ") != std::string::npos;
 }
 
-// driver_threads() returns the larger of two counts, since both can be too small. A thread gets the
-// name llvmpipe a moment after its start. LP_NUM_THREADS may have changed since another user of
-// Mesa in this process opened the display.
+// driver_threads() returns the larger of two counts, because each can be too small.
+// running_threads() misses a thread that does not have the name llvmpipe yet. asked_threads() is
+// wrong if LP_NUM_THREADS had another value when Mesa read it.
 
-// Returns LP_NUM_THREADS as llvmpipe reads it. If it is not set, returns the number of cores, or 0
-// for a single core. Must be called before the first display is opened, when llvmpipe reads it.
+// Returns LP_NUM_THREADS as llvmpipe interprets it. If it is not set, returns the number of cores,
+// or 0 for one core. Call this before the first display is opened, when llvmpipe reads the value.
 int asked_threads() {
   static const int asked = [] {
     constexpr long kMost = 16;  // maximum number of llvmpipe threads in Mesa 22
@@ -83,7 +83,7 @@ int running_threads() {
 
 // Throws Error if too little address space is left for Mesa's software device (as under ulimit -v).
 // The device needs memory for its libraries, such as LLVM, and a stack and a heap for each of up to
-// 16 threads. With less memory it crashes, or seems not to be installed.
+// 16 threads. With less memory the device crashes, or seems not to be installed.
 void require_memory() {
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
@@ -170,7 +170,7 @@ GlInfo read_info(const std::string& kind) {
   return info;
 }
 
-// Makes a context on the device and makes it current. Returns an empty text, or why this failed.
+// Makes a context on the device, and makes it current. Returns an empty text, or the error.
 std::string open(EGLDeviceEXT device, EglContext& out) {
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))

@@ -18,7 +18,7 @@ struct GlDevice {
   std::string problem;                    // why the device is not usable
 };
 
-/// The device of a context. Every result is recorded with it.
+/// Describes the device of a context. Every result is recorded with this description.
 struct GlInfo {
   std::string kind;  // "software" or "hardware"
   std::string vendor, renderer, version, glsl;
@@ -30,9 +30,9 @@ struct GlInfo {
   bool reset_detection = false;
 };
 
-/// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
-/// GlCurrent object for it exists. A thread may use several contexts one after the other. Several
-/// threads may use one context, one thread at a time.
+/// Owns a context of OpenGL 4.3 core or later. The context is current only while a GlCurrent object
+/// for it exists. A thread may use several contexts one after the other. Several threads may use
+/// one context, one thread at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or an index of
@@ -58,7 +58,7 @@ class GlContext {
 
 /// Makes a context current in this thread while the object exists. The destructor restores the
 /// previous state: no context, another GlContext, or a context of the caller with its surfaces and
-/// its rendering API. Objects may be nested. All code that calls GL holds such an object.
+/// its rendering API. GlCurrent objects may be nested. All code that calls GL must hold one.
 class GlCurrent {
  public:
   /// Throws Error if the context cannot be made current: another thread is using it, or a
@@ -77,8 +77,8 @@ class GlCurrent {
 
 /// Returns the number of threads with which Mesa's llvmpipe draws in this process: the number of
 /// running threads, or the number set by LP_NUM_THREADS, whichever is larger. Returns 0 if the
-/// renderer is not llvmpipe. Such threads may write to freed memory (docs/drivers.md), so a device
-/// with such threads guarantees nothing (assumption A10).
+/// renderer is not llvmpipe. Such threads may write to freed memory (docs/drivers.md), so nothing
+/// is guaranteed on a device that has them (assumption A10).
 int driver_threads(const std::string& renderer);
 
 /// Returns a text about the risk of the driver's threads and the remedy, without a full stop.

@@ -1,5 +1,5 @@
-// Each kind of fault replaces the entry points that it needs. The thread-local `plan` says which
-// call fails. In threads without a plan, a replacement calls the driver.
+// For each kind of fault, replaces the GL functions that should fail. The thread-local `plan` tells
+// which call fails. In threads without a plan, a replacement calls the driver's function.
 #include "core/gl/base/driver_fault.h"
 
 #include <optional>
@@ -32,9 +32,9 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// Every compute program of farcull contains the line kEnd, which ends an invocation after its last
-// work item. kEarlierEnd replaces kEnd. It also ends the invocation before work item far_lost_item
-// - 1. If far_lost_item is 0, no invocation ends early.
+// In every compute program of farcull, the line kEnd ends an invocation after its last work item. A
+// fault replaces this line by kEarlierEnd, which also ends the invocation before work item
+// far_lost_item - 1. If far_lost_item is 0, no invocation ends early.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";

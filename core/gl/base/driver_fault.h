@@ -1,7 +1,7 @@
-// Simulated faults of a GL driver. `farcull doctor` and the tests use them to check that faults are
-// noticed (assumption A7). While a DriverFault object exists, failing functions replace GL's entry
-// points (libepoxy's function pointers). Shader sources are changed before the driver compiles
-// them. Only core/gl and its tests include this.
+// Simulates faults of a GL driver. `farcull doctor` and the tests check that each fault is noticed
+// (assumption A7). While a DriverFault object exists, some of libepoxy's pointers to GL functions
+// point to replacements. A replacement can let a call fail, or change the source of a shader. Only
+// core/gl and its tests include this file.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -18,8 +18,8 @@ namespace farcull {
 template <auto* Pointer, class Function = std::remove_pointer_t<decltype(Pointer)>>
 class GlEntryPoint;
 
-/// Sets *Pointer to `replacement` for the lifetime of the object. An entry point can have only one
-/// such object at a time. The replacement calls the driver by original().
+/// Sets *Pointer to `replacement` for the lifetime of the object. For each GL function, only one
+/// such object may exist. The replacement calls the driver's function by original().
 template <auto* Pointer, class Result, class... Arguments>
 class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
  public:
@@ -37,8 +37,8 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
   static Result original(Arguments... arguments) {
     if (resolved_) return original_(arguments...);
-    // The first call restores *Pointer, so that libepoxy looks up the driver's function and writes
-    // it there. Later calls do not change *Pointer, since other threads may be calling it.
+    // The first call restores libepoxy's own function, which then stores the driver's function in
+    // *Pointer. Later calls do not change *Pointer, since other threads may be calling it.
     *Pointer = original_;
     struct Again {
       ~Again() {
@@ -74,8 +74,8 @@ class DriverFault {
   DriverFault(const DriverFault&) = delete;
   DriverFault& operator=(const DriverFault&) = delete;
 
-  /// Makes a later draw, dispatch or query fail, depending on the kind of fault. `call` is its
-  /// number, counted from 0 after strike(). No call fails before strike().
+  /// Makes a later draw, dispatch or query fail, depending on the kind of fault. call: number of
+  /// the failing call, counted from 0 after strike(). No call fails before strike().
   void strike(std::size_t call = 0);
 
  private:

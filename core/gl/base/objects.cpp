@@ -1,4 +1,4 @@
-// Compiles programs. Checks after every binding and allocation that GL carried it out.
+// Compiles GL programs. Checks after each binding and allocation that GL has carried it out.
 #include "core/gl/base/objects.h"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ constexpr const char* kKernelNames =
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
-// FAR_AT is element `index` of the array at the end of a storage block. If `index` is too large,
-// FAR_AT is the last element. A lost command is noticed only when results are read. Before that, an
-// index read from a buffer may be wrong, and must not lead outside the array. The storage buffers
-// of farcull are never empty.
+// FAR_AT(array, index) is an element of the array at the end of a storage block. An index past the
+// end gives the last element. After a lost command, a shader can read a wrong index from a buffer
+// before the host notices the loss. Such an index must not lead outside the array. The storage
+// buffers of farcull are never empty.
 constexpr const char* kElement =
     "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
 
@@ -36,8 +36,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Binds the buffer `name`. Throws Error if GL reports another binding, because the next update
-// would change another buffer.
+// Binds the buffer `name`. Throws Error if GL reports another binding, because an update would then
+// change a wrong buffer.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;

@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// Throws Error naming the GL stage: a command was lost. reason: what shows the loss.
+/// Throws Error: a command of the GL stage `stage` was lost. reason: the sign of the loss.
 [[noreturn]] void throw_lost(const std::string& stage, const std::string& reason);
 
 template <void (*Delete)(GLuint)>
@@ -68,7 +68,7 @@ struct ShaderText {
   std::vector<std::string> texts;
 };
 /// Compiles and links a program. The source of each stage is "#version 430 core", `defines` (one
-/// #define line each) and the stage's texts. Throws Error with the driver's log and the name.
+/// #define line each) and the stage's texts. If this fails, throws Error with the driver's log.
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 

@@ -1,6 +1,6 @@
-// The canvas on OpenGL 4.3. It has a depth texture, and reads proxies or triangles from storage
-// buffers. To test visibility, it uses either an occlusion query for each slot, or a flag for each
-// slot that the fragment program sets.
+// Implements Canvas with OpenGL 4.3. Draws proxies or triangles from storage buffers into a depth
+// texture. Each slot (index of a result of a pass) has an occlusion query, or a flag that the
+// fragment program sets.
 #pragma once
 
 #include <bit>

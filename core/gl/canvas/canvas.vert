@@ -1,9 +1,9 @@
-// Reads an element for each draw of a batch, and places it. A batch is a sequence of draws of one
-// step that read one element buffer. FAR_PROXY: an element is seven vec4, a quadrilateral of two
-// triangles. Otherwise an element is three vec4, a triangle.
+// Reads the element of each draw of a batch, and places its vertices. A batch is a sequence of
+// draws that belong to one step and read one element buffer. FAR_PROXY: an element is a
+// quadrilateral of two triangles (seven vec4). Otherwise an element is a triangle (three vec4).
 // FAR_ECHO: each buffer begins with a tag. A batch begins with a head: this pass's serial number,
-// and the report's word for the batch. The batch's first vertex writes an echo to that word. The
-// echo is a checksum of the values that both shaders read (core/gl/base/objects.h).
+// and the index of the batch's word in the report. The batch's first vertex writes an echo to this
+// word: a checksum of the values that both shaders read (core/gl/base/objects.h).
 #ifdef FAR_ECHO
 layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };

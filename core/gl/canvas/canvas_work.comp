@@ -1,7 +1,7 @@
-// Step 0 sums the words of a buffer, each hashed with its position. Step 1 packs flags, one word
-// each, into bits: a bit is 1 if its flag equals this pass's serial number. The report begins with
-// the number of finished work items and the sum of step 0. The host sets both to 0; each dispatch
-// adds to them. Each dispatch writes its echo to its own word of the report.
+// Step 0 hashes each word of a buffer with its position, and sums the hashes. Step 1 packs flags,
+// one word each, into bits. A bit is 1 if its flag equals this pass's serial number. The report
+// begins with the number of finished work items and the sum of step 0. The host sets both to 0;
+// each dispatch adds to them. Each dispatch also writes an echo to its own word of the report.
 layout(local_size_x = 64) in;
 #if FAR_STEP == 0
 layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uvec4 from[]; };

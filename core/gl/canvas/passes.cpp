@@ -1,6 +1,6 @@
-// The passes of the GL canvas. A batch is a sequence of draws of a step that read one element
-// buffer. A pass uploads its draw list and draws it batch by batch. Its results are used only if
-// the report, the number of primitives and the control items show that every command ran.
+// The passes of the GL canvas. A batch is a sequence of draws that belong to one step and read one
+// element buffer. A pass uploads its draw list and draws it batch by batch. The results are used
+// only if report, number of primitives and control items (state.h) show that every command ran.
 #include "core/gl/canvas/canvas.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class Layout {
  private:
   std::size_t quad_elements() const { return canvas_.mode == DepthMode::fragment ? 1 : 2; }
 
-  // Adds a quadrilateral at a fixed depth to the canvas's own elements: a proxy or two triangles.
+  // Adds a quadrilateral at fixed depth, one proxy or two triangles, to the canvas's own elements.
   void add_quad(double x0, double y0, double x1, double y1, float d) {
     std::vector<float>& own = out_.own;
     const float l = static_cast<float>(x0), b = static_cast<float>(y0), r = static_cast<float>(x1),
@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // Pads the list: a batch begins at a multiple of `grain` entries.
+      // Pads the list, so that a batch begins at a multiple of `grain` entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -122,10 +122,10 @@ class Layout {
   bool fresh_ = true;      // the next draw starts a batch
 };
 
-// Returns the draw list of `pass`. With `marks`, the first step stores and the last step tests; if
-// necessary, steps with only control items are added (state.h). The first store draws this pass's
-// mark, and the first test looks for the mark of the previous pass. Without `marks`, no step is
-// added, and no mark is drawn or tested.
+// Returns the draw list of `pass`. With `marks`, the first step must store and the last step must
+// test, so a step that has only control items (state.h) is added where necessary. The first store
+// draws this pass's mark. The first test looks for the mark of the previous pass. Without `marks`,
+// no step is added, and no mark is drawn or tested.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -166,9 +166,9 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   begun = true;
 }
 
-// Looks for a stored set of elements with these bytes, and makes it the current set. If there is
-// none, returns false, and the caller must write the elements. An unchanged scene needs one set per
-// view.
+// Looks for a stored set of elements that was made from these bytes, and makes it the current set.
+// Returns false if there is none; the caller must then write the elements. Several sets are stored,
+// because an unchanged scene needs one set per view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   constexpr std::size_t kEarlier = 2;                       // maximum of earlier.size()
   constexpr std::size_t kLargest = std::size_t{128} << 20;  // maximum of bytes.size() in `earlier`
@@ -219,7 +219,7 @@ std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
 }
 
 // Draws a batch with one occlusion query for each slot. The draws of a slot may be in several
-// batches of a step. So its query stays active until the next slot or the end of the step.
+// batches of a step, so the slot's query stays active until the next slot or the end of the step.
 void CanvasState::draw_queries(const CanvasPass& laid, const CanvasBatch& batch,
                                std::uint32_t& open) {
   const GpuDraw* const list = &laid.list[batch.offset + 1];
@@ -245,8 +245,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
-    // Every pass generates new queries. If glBeginQuery is lost, the new name has no query object,
-    // which cannot return the result of an earlier pass.
+    // Every pass generates new query names. If glBeginQuery is lost, no query object exists for the
+    // new name, so that the result of an earlier pass cannot be read.
     queries.clear();
     while (queries.size() < laid.slots) queries.push_back(gl_make<GlQuery>(glGenQueries));
   }
@@ -402,7 +402,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   return out;
 }
 
-// Makes the context current, and a state if there is none. Runs `work`. On failure, calls forget().
+// Makes the context current, creates a missing state, and runs `work`. On failure, calls forget().
 template <class Work>
 auto GlCanvas::guarded(const Work& work) {
   const GlCurrent current(context_);

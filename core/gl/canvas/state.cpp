@@ -1,6 +1,6 @@
 // Sets the GL state for a pass. Values that GL can return are read back at once. The echo of each
-// batch covers the other values. Compute programs sum the uploaded data and pack the flags. The
-// report compares each echo from the device with the echo computed here.
+// batch, a checksum from the device, covers the other values. Compute programs sum the uploaded
+// data and pack the flags. CanvasReport compares each echo with the echo computed on the CPU.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>
@@ -87,8 +87,8 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // The bound range of a piece begins at a multiple of the alignment, 16 bytes before its data.
-  // These bytes are the tag (first piece) or the end of the previous piece (later pieces).
+  // expect() sums a buffer in pieces. A piece's bound range begins at a multiple of the alignment,
+  // 16 bytes before its data. These bytes are the tag, or the end of the previous piece.
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -106,7 +106,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this write is lost, read() notices it: the device then adds to the numbers of the last pass.
+  // If this write is lost, the device adds to the numbers of the last pass, and read() throws.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -157,8 +157,8 @@ void CanvasReport::pack(const GlStore& flags, std::uint32_t serial, std::uint32_
 std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   wait_for_device(stage);
   const std::size_t bits = kHead + echoes_.size();
-  // An echo can equal this initial value by chance, but the number of finished work items cannot.
-  // So read() notices below if the words were not read.
+  // If store_.read() is lost, all words keep this initial value. The number of finished work items
+  // cannot have this value, so the comparison with finished_ below then throws.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);
@@ -352,7 +352,7 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Uploads the draw list and the canvas's own elements. The device sums them.
+// Uploads the draw list and the canvas's own elements. The device sums the uploaded bytes.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
   const auto own = std::as_bytes(std::span(laid.own));
@@ -426,7 +426,7 @@ void CanvasState::draw(std::size_t first, std::size_t count) {
   }
 }
 
-// Each stamp is a new query. If glQueryCounter is lost, no old time is read.
+// Records the device's time in a new query: if glQueryCounter is lost, no old time is read.
 void CanvasState::stamp(std::size_t place) {
   if (!ticks) return;
   stamps[place] = gl_make<GlQuery>(glGenQueries);

@@ -1,6 +1,6 @@
-// The canvas on the device: what a pass uploads, the GL state, and the report. In the report the
-// device returns checksums of what it read and did (assumption A7). Only core/gl/canvas includes
-// this.
+// The state of a GL canvas on the device: the data that a pass uploads, the GL state, and the
+// report. The report is a buffer in which the device returns checksums of the values that it read
+// (assumption A7). Only core/gl/canvas includes this file.
 //
 // The canvas also draws its own elements: the quad for kEverywhere, and control items. Control
 // items are in pixels 0 to 2 of the render target, outside the window. They reveal lost commands:
@@ -8,8 +8,8 @@
 //   visibility test has a control item at that depth, or half a gap behind it if equal depths are
 //   not seen. The item is seen only if the store ran.
 // - Pixels 1 and 2: each pass stores a mark (the depth kMark) in one of them, alternately. In the
-//   other pixel, it tests a control item at kAsked. If the previous pass's mark was not cleared,
-//   the item is seen, and the pass fails.
+//   other pixel, the pass tests a control item at kAsked. If the previous pass's mark was not
+//   cleared, the item is seen, and the pass fails.
 #pragma once
 
 #include <array>
@@ -48,12 +48,12 @@ constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
 /// All data that a pass uploads.
 struct CanvasPass {
   std::uint32_t serial = 0;  // unique among the passes of the process
-  /// Two unused entries in the place of the store's tag, then the batches. Each batch begins with a
-  /// head: {serial, word of the report}.
+  /// Two unused entries (their bytes are replaced by the store's tag), then the batches. Each batch
+  /// begins with a head: {serial, index of the batch's word in the report}.
   std::vector<GpuDraw> list;
   std::vector<float> own;  // the canvas's own elements
   std::vector<CanvasBatch> batches;
-  /// Number of slots: the caller's, one per control item, and (with marks) one never seen.
+  /// Slots of the caller, one slot per control item, and (with marks) one slot that is never seen.
   std::uint32_t slots = 0;
   std::span<const std::byte> list_bytes() const {
     return std::as_bytes(std::span(list).subspan(2));
@@ -63,14 +63,14 @@ struct CanvasPass {
 /// Storage buffer bindings of the programs of the canvas.
 constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2, kReport = 3;
 
-/// A storage buffer for the device's report. Every batch of draws and every dispatch writes to the
-/// report an echo (GlEcho: a checksum of the values that were read). A dispatch also adds the
-/// number of its finished work items. The report also holds the packed flags of a pass.
+/// A storage buffer for the device's report. Every batch of draws and every dispatch writes an echo
+/// to the report (GlEcho: a checksum of the values that were read). A dispatch also adds the number
+/// of its finished work items. The report also holds the packed flags of a pass.
 class CanvasReport {
  public:
   static constexpr std::uint32_t kHead = 2;  // words before the echoes: finished items, sum
 
-  /// block: bytes of data in a storage block. alignment: in bytes, of a storage buffer range.
+  /// block: bytes of data in a storage block. alignment: bytes, for the start of a bound range.
   CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment);
 
   /// Begins a report on `batches` batches, at most `dispatches` dispatches and `flags` packed
@@ -153,9 +153,9 @@ struct CanvasState {
 
   std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
-  // True if the fragment program compares a proxy's depth with the stored depth, read from the
-  // depth texture. Triangles have a fixed depth, so the depth test decides before the fragment
-  // program runs. So no step reads a texture that another step draws to, and no step has to wait.
+  // True if the fragment program compares a proxy's depth with the stored depth from the depth
+  // texture. For triangles, whose depth is fixed, the depth test decides before the fragment
+  // program runs. So no step has to wait until another step has drawn to a texture.
   bool compares_in_shader() const {
     return options.query == QueryMode::flags && mode == DepthMode::fragment;
   }

@@ -1,4 +1,4 @@
-// Draws with several samples along each side of a pixel. The CPU averages the samples.
+// Draws a picture with several samples along each side of a pixel. The CPU averages the samples.
 #include "core/gl/picture/picture.h"
 
 #include <Eigen/Geometry>
@@ -12,8 +12,8 @@
 namespace farcull {
 namespace {
 
-// Draws triangles whose colours were computed on the CPU. A corner is x, y and depth in normalized
-// device coordinates, and its colour as RGBA8 in 32 bits.
+// Draws triangles whose colours were computed on the CPU. Each corner has x, y and depth in
+// normalized device coordinates, and a colour (RGBA8 in 32 bits).
 constexpr char kTriangles[] = R"glsl(
 #ifdef FAR_VERTEX
 layout(std430, binding = 0) readonly buffer Corners { uvec4 corners[]; };
@@ -51,8 +51,8 @@ std::uint32_t packed(const Rgba& colour, double light) {
   return channel(colour.r) | channel(colour.g) << 8 | channel(colour.b) << 16 | 255u << 24;
 }
 
-// Returns the factor by which light scales a triangle's colour, equal on both sides. Returns 1 for
-// degenerate triangles, which have no normal.
+// Returns the factor by which light scales a triangle's colour. Both sides have the same factor.
+// Returns 1 for degenerate triangles, which have no normal.
 double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();

@@ -53,10 +53,10 @@ struct PictureTriangle {
 /// Largest width and height of a picture, px. Every OpenGL 4.3 device can draw it with samples = 4.
 constexpr int kMostPicture = 4096;
 
-/// Returns the window of a picture of width x height pixels (each even, 2 to kMostPicture). It
-/// looks along the view at the boxes. margin: border on each side, as a fraction of the picture (<
-/// 1/2). The origin is near the boxes, so that scenes far from the world's origin are sharp. Throws
-/// Error naming the scene if doubles cannot distinguish its pixels.
+/// Returns a window of width x height pixels (each even, 2 to kMostPicture) that shows the boxes in
+/// this view. margin: border on each side, as a fraction of the picture (< 1/2). The origin is near
+/// the boxes, so that scenes far from the world's origin are sharp. Throws Error naming the scene
+/// if doubles cannot distinguish the pixels.
 Window picture_window(const View& view, std::span<const Box> boxes, int width, int height,
                       double margin, const std::string& scene_name);
 

@@ -23,8 +23,8 @@ using Operands = std::array<float, 4>;  // a, b, c, unused
 
 float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Returns the error of `got`, in units of 2^-23 of the exact value head + tail (|tail| is tiny). A
-// result that GLSL allows to be flushed to 0 or to overflow counts as correct.
+// Returns the error of `got` relative to the exact value head + tail (|tail| is tiny), in units of
+// 2^-23. A result that GLSL allows to be flushed to 0 or to overflow counts as correct.
 double units(float got, double head, double tail) {
   const double exact = std::abs(head);
   if (exact > kLargest) {
@@ -88,7 +88,7 @@ std::vector<Operands> make_operands(Random& random) {
         break;
     }
     float c = a * b;
-    // c is about a * b, so that a * b - c cancels. Otherwise a * b may be flushed or overflow.
+    // If |c| is outside this range, a * b may be flushed or overflow, so c gets a random value.
     if (!(std::abs(c) > 0x1p-100f && std::abs(c) < 0x1p100f)) c = random.normal(-24, 20);
     out[i] = {a, b, neighbour(c, random.below(3) - 1), 0};
   }
@@ -199,9 +199,9 @@ ProbeResult transport(const ProbeOptions& options) {
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// Runs canvas.frag on sorted depths. The mapped depths must not decrease. Entries must be mapped
-// into [1/4, 3/4], and exits to at most 3/4 + kAskedBehind. If an entry and an exit have the same
-// depth, the exit must not be mapped before the entry.
+// Runs canvas.frag on ascending depths. Checks that the mapped depths do not decrease, that entries
+// are mapped into [1/4, 3/4], and that exits are mapped to at most 3/4 + kAskedBehind. If an entry
+// and an exit have the same depth, the exit must not be mapped before the entry.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
@@ -232,7 +232,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
     };
     const std::vector<std::uint32_t> entry = depths(store), exit = depths(ask);
     const bool floats = format == DepthBuffer::float32;
-    // 1/4 and 3/4. Floats hold them exactly; fixed point is within 2^-24 of them.
+    // The bits of 1/4 and 3/4. Floats hold both exactly; fixed point may err by at most 2^-24.
     const std::uint32_t least = floats ? std::bit_cast<std::uint32_t>(0.25f) : 0x3fffff00u;
     const std::uint32_t most = floats ? std::bit_cast<std::uint32_t>(0.75f) : 0xc0000100u;
     const std::uint32_t behind = floats ? std::bit_cast<std::uint32_t>(0.75f + kAskedBehind)
@@ -261,8 +261,8 @@ std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& option
 
 }  // namespace farcull::probe
 
-// Runs kernels on single cases. A canvas draws each solid in one pixel of a square window, and its
-// entry and exit depths are read back.
+// Runs kernels on single cases. A canvas draws each solid in one pixel of a square window, and the
+// solid's entry and exit depths are read back.
 namespace farcull {
 
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,

@@ -87,8 +87,9 @@ void run(GLuint program, GLuint from, GLuint to, std::uint32_t count, std::uint3
   glDispatchCompute((count + kGroup - 1) / kGroup, 1, 1);
 }
 
-// Checks the atomics. Each counter must give each number to one invocation, and every bit must be
-// set. Two invocations share each mark; exactly one of them must find it unset.
+// Every invocation increments one counter, decrements another, sets its own bit, and sets a mark
+// that it shares with one other invocation. Checks that no two invocations get the same number from
+// a counter, that every bit is set, and that exactly one of two invocations finds their mark unset.
 ProbeResult atomics(const ProbeOptions& options) {
   const GlProgram program = step_program(0, options.plain_atomics);
   Worst wrong;
@@ -156,9 +157,9 @@ ProbeResult dispatches(const ProbeOptions& options) {
                 "48 in a chain, each reads what other groups of the one before wrote");
 }
 
-// A draw counts the fragments of each pixel, and a dispatch copies the counts. Like all programs of
-// the canvas that write to buffers, the drawing program has a discard. Without it, llvmpipe (Mesa
-// 22.3.6) drops earlier work on a tile that a triangle covers, buffer writes included.
+// Checks that a dispatch reads the fragment counts that a draw wrote. Like all programs of the
+// canvas that write to buffers, the drawing program has a discard. Without the discard, llvmpipe
+// (Mesa 22.3.6) drops earlier work on a tile that a triangle covers, buffer writes included.
 ProbeResult draws(const ProbeOptions& options) {
   constexpr int kSide = 512;
   constexpr std::uint32_t kPixels = kSide * kSide;
@@ -200,7 +201,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Counts the driver's threads, a known cause of memory damage. The damage cannot be observed.
+// Counts the driver's threads, which may damage memory. No probe can observe the damage itself.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

@@ -15,7 +15,7 @@ constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
 // Returns random depths, one for each pixel. They lie in the range of the canvas's depth map, at
 // the ends of this range, at depths of control items (core/gl/canvas/state.h), or anywhere. If
-// `beside` is given, some are equal to its depth in the same pixel, or at most two floats away.
+// `beside` is given, some depths are within two floats of the depth of `beside` in the same pixel.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -60,7 +60,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
     target.draw(first * kPixels, count * kPixels);
     return target.depths();
   };
-  // Draws each layer alone to see its rounded depths. All layers together must leave the least.
+  // Draws each layer alone to read its rounded depths. All layers together must leave the minimum.
   std::vector<std::uint32_t> least(kPixels, 0xffffffff);
   std::vector<float> nearest(kPixels, 1);
   Worst wrong;
@@ -82,8 +82,8 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
     if (k < kLayers) {
       for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
     }
-    // Stores all layers, then tests a proxy in each pixel i. Its colour is i + 1 if the proxy
-    // passed.
+    // Stores all layers, then tests a proxy in each pixel. Pixel i gets the colour i + 1 if its
+    // proxy passes the depth test.
     store(0, kLayers);
     target.upload(proxies_at(asked));
     Target::depth_test(GL_GEQUAL, false);
@@ -217,7 +217,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
     std::vector<Proxy> proxies;
     for (std::size_t i = 0; i < kQueries; ++i) {
       const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;
-      // A square of 1/4 to 1 px side around the pixel's centre. About half cover the whole pixel.
+      // The proxy is a square around the pixel's centre. About half of them cover the whole pixel.
       const double d = random.below(2) ? 0 : random.below(7) / 16.0;
       proxies.push_back(box(x + d, y + d, x + 1 - d, y + 1 - d));
       proxies.back().solid[4][1] = 1;
@@ -266,7 +266,7 @@ ProbeResult area_queries(const std::string& name, const GlContext& context,
     drawables.proxies.push_back(q);
     drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
   };
-  // Stores a far background. Then stores pixels in front of it, nearer than the tested solids.
+  // Stores a far background, and some near pixels. A solid is tested between these two depths.
   std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
   constexpr double kHalf = 0.5 * kWindow;
   add(box(-kHalf, -kHalf, kHalf, kHalf), 50);

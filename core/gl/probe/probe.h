@@ -70,13 +70,13 @@ inline SolidCase solid_case_at(std::size_t i) {
 }
 
 /// Returns the entry and exit depths of `solid` for kSolidCases cases. Case i has the centre
-/// solid_case_at(i). Makes the context current while it runs. Throws Error as GlCanvas does.
+/// solid_case_at(i). The context is current during the call. Throws Error as GlCanvas does.
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
 
 /// In each of kSolidCases pixels, stores one solid and tests another for visibility, in a window of
-/// this depth (px). Returns 1 per pixel where flags, queries, and queries on 24 bits all see the
-/// tested solid. A solid must be seen behind itself if the pixel's line hits it.
+/// this depth (px). Returns 1 for a pixel if flags, queries, and queries on 24 bits all see the
+/// tested solid. If both solids are equal and the pixel's line hits them, the result must be 1.
 std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
                                       std::span<const SolidCase> stored,
                                       std::span<const SolidCase> asked, double depth);

@@ -14,8 +14,8 @@ layout(std430, binding = 0) buffer From { uint from[]; };
 layout(std430, binding = 1) buffer To { uint to[]; };
 
 #if FAR_STEP == 0
-// The buffer `from` holds kSpread counters from 0 upwards, kSpread counters from u_count / kSpread
-// downwards, one bit for each invocation, and one mark for every two invocations.
+// `from` holds kSpread counters that count up from 0, kSpread counters that count down from
+// u_count / kSpread, one bit for each invocation, and one mark for every two invocations.
 const uint kSpread = 16u;
 uint take(uint at, uint n) {
 #ifdef FAR_PLAIN

@@ -10,9 +10,9 @@
 namespace farcull::probe {
 namespace {
 
-// A convex quadrilateral as four half-planes a x + b y + c >= 0 with |a| + |b| = 1. If every corner
-// moves by at most d along each axis, no side moves by more than d in this measure. So a pixel
-// centre that is more than d inside (outside) stays inside (outside).
+// A convex quadrilateral as four half-planes a x + b y + c >= 0 with |a| + |b| = 1. If a corner
+// moves by at most d along each axis, its value a x + b y changes by at most d. So a pixel centre
+// that is more than d inside (outside) stays inside (outside) if all corners move in this way.
 struct Sides {
   std::array<std::array<double, 3>, 4> half{};
 
@@ -72,8 +72,8 @@ class Coverage {
 
 enum class Direction { upright, level, diagonal, any };
 
-// Tests edges near pixel centres, one proxy for each edge. If a centre is wrongly covered or not
-// covered, the edge was displaced by at least its distance from the centre (px per axis).
+// Tests edges near pixel centres, one proxy for each edge. If the coverage of a centre is wrong,
+// the edge was displaced by at least its distance from the centre (px per axis).
 void short_edges(Coverage& coverage, Random& random, Direction direction, double reach,
                  Worst& worst) {
   constexpr int kCell = 6, kEdge = 3;
@@ -163,7 +163,7 @@ void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst,
   }
 }
 
-// Keeps the measurement that comes closest to its bound. `samples` is the sum over all of them.
+// Keeps the measurement that is closest to its bound. worst.samples sums over all measurements.
 struct Tightest {
   Worst worst;
   double bound = 0;
@@ -188,8 +188,8 @@ std::string size(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
 
-// Draws quadrilaterals, each in its own cell. Each pixel that is inside by more than `margin` must
-// be covered once, even if it lies on the diagonal between the two triangles.
+// Draws quadrilaterals, each in its own cell. Each pixel centre that is inside by more than
+// `margin` must be covered once, even on the diagonal between the quadrilateral's two triangles.
 Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds) {
   constexpr int kCell = 32;
   const int side = coverage.target().width();
@@ -229,7 +229,7 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
   return wrong;
 }
 
-// Draws a mesh of jittered cells that share corners. It must cover every pixel inside once.
+// Draws a mesh of jittered cells that share corners. Each pixel inside must be covered once.
 Worst abutting_mesh(Coverage& coverage, Random& random) {
   const int side = coverage.target().width();
   Worst wrong;
@@ -267,8 +267,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
   return wrong;
 }
 
-// Draws points and segments. Snapping leaves multiples of 1/16 px unchanged, and vertical and
-// horizontal segments remain segments. So the snapped triangles have no area.
+// Draws points and segments, which must cover no pixel. Snapping leaves multiples of 1/16 px
+// unchanged, and axis-parallel segments remain segments. So the snapped triangles have no area.
 Worst zero_area(Coverage& coverage, Random& random, bool fat) {
   const int side = coverage.target().width();
   std::vector<Proxy> proxies;

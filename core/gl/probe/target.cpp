@@ -266,7 +266,7 @@ double snap_bound(const GlContext& context, const ProbeOptions& options) {
 }
 
 double vertex_bound(const ProbeOptions& options, int viewport) {
-  // The budget bounds the length of a two-dimensional displacement; sqrt(2) gives one axis.
+  // Budget::vertex bounds a length in the plane. Dividing by sqrt(2) gives the bound for one axis.
   return options.no_vertex_term ? 0 : budget_for({}, viewport).vertex / std::numbers::sqrt2;
 }
 

@@ -154,7 +154,7 @@ inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (
 
 /// Returns the largest side (px) that a target of a canvas on this device can have.
 int largest_side(const GlContext& context);
-/// Return bounds (px) of the displacement along one axis: by snapping, and by vertex arithmetic.
+/// snap_bound(), vertex_bound(): bounds (px) of the displacement per axis, by snapping or vertices.
 double snap_bound(const GlContext& context, const ProbeOptions& options);
 double vertex_bound(const ProbeOptions& options, int viewport);
 

@@ -1,4 +1,4 @@
-// The list of pairs, and the scene. The two parts of the chosen pair have two colours, and the curve in which
+// Shows the list of pairs, and the scene. The two parts of the chosen pair have two colours, and the curve in which
 // they intersect is drawn. All other parts are ghosts (see-through). The page's URL stores the chosen pair.
 
 const MOST_LISTED = 1000;
@@ -67,8 +67,8 @@ const larger = (row) => (sizeOf(row.a) > sizeOf(row.b) ? row.a : row.b);
 const outerOf = (row) => (row.inner === null ? larger(row) : row.inner === row.a ? row.b : row.a);
 
 // If no pair is chosen, parts that clash or may contain each other have the first colour. If a pair is chosen,
-// its parts are solid. But a part that contains the other part is a ghost. The larger part is also a ghost if the
-// reader wants to see through.
+// its parts are solid. But a part that contains the other part is a ghost (see-through). The larger part is also
+// a ghost if the reader has chosen to see through.
 function showParts() {
   if (!view) return;
   const row = about.rows[state.row], states = new Uint8Array(frame.triangles);

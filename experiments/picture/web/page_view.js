@@ -528,7 +528,7 @@ async function loadFrame() {
   return { positions, a, b, contacts, corners, objects, triangles, owner };
 }
 
-// For a step, returns a byte for each pair (1: missed), and a bit for each triangle (1: kept, but in no
+// Returns the step's result: a byte for each pair (1: missed), and a bit for each triangle (1: kept, but in no
 // collision).
 async function loadStep(step) {
   const lost = step.missed ? await numbersOf(step.missed) : [];

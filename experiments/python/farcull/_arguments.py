@@ -168,8 +168,8 @@ Arrays = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def arrays(
     V: Any, F: Any, object_starts: Any, labels: Any, moves: Any, before: Union[Grouped, None, bool] = False
 ) -> Tuple[Grouped, Arrays]:
-    """Returns the input of a call. ``before``: the grouped triangles of the previous call; poses alone move these
-    triangles. None: there are no such triangles. False: this call does not accept poses alone."""
+    """Returns the input of a call. ``before``: the grouped triangles of the previous call, which poses alone
+    move; None: there was no such call; False: this call does not accept poses alone."""
     matrices = poses(moves)
     alone = V is None and F is None and object_starts is None and labels is None
     if alone and isinstance(before, Grouped) and len(matrices):

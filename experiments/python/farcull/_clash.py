@@ -18,7 +18,7 @@ from ._scenes import Scene
 
 
 class Clash:
-    """Which objects of a scene clash, as ``farcull clash`` reports. Made by :func:`clash`."""
+    """The answer of :func:`clash`: which objects of a scene clash, as ``farcull clash`` reports."""
 
     __slots__ = ("_clash", "_json", "scene")
 

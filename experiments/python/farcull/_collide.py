@@ -25,7 +25,7 @@ KINDS: Tuple[str, ...] = _farcull.kinds
 
 @dataclass(frozen=True)
 class Report:
-    """Which stages ran, with their reasons and times. For people and logs."""
+    """Tells which stages ran, and their reasons and times, for people and logs."""
 
     candidates_ms: float  # wall clock, from the input to the candidates
     exact_ms: float  # wall clock of the exact tests
@@ -143,7 +143,7 @@ class Collider:
         object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
         poses: Optional[ArrayLike] = None,
     ) -> Result:
-        """The pairs that collide. V, F, object_starts, labels and poses are the parameters of :func:`collide`.
+        """Returns the pairs that collide. V, F, object_starts, labels and poses are the parameters of :func:`collide`.
 
         ``find(poses=...)`` alone moves the arrays of the previous call, unless that call raised an exception.
         Raises InputError for wrong arrays, if there is nothing to test, and if ``ignore`` names an object that does
@@ -227,10 +227,10 @@ def collide(
 def join(
     *meshes: Any, weld: Union[None, float, str] = None
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Meshes as V, F and object_starts, the arguments of :func:`collide`.
+    """Returns V, F and object_starts, the arguments of :func:`collide`, for meshes.
 
     A mesh is a pair (V, F), an object with ``vertices`` and ``faces`` (trimesh), or an object with ``points`` and
-    ``cells`` (meshio). Its cells must be triangles; lines and vertices are skipped, since they are no surface.
+    ``cells`` (meshio). The cells must be triangles; lines and vertices are skipped, since they are no surface.
     ``weld`` merges vertices of a mesh that nearly coincide, as :class:`Scene` does. Raises InputError for
     anything else, and for a mesh without triangles.
     """

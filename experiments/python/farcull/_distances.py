@@ -172,10 +172,10 @@ def distances(
     inside: True: find out by winding numbers if an object lies inside another.
     threads: up to 1024; 0: one for each core.
     ignore: pairs of different objects that get no answer, as in :func:`collide`; not with "nearest".
-    exact: True: also give ``squared``. With "all", each number is then the exact one, rounded once; this takes about
-        ten times as long. False, with "all": the pairs are exact; a distance is off by at most 2^-32 of itself (0 only
-        if the triangles meet), a normal by at most 2^-15, and a point is off its triangle by at most 2^-45 of the
-        pair's extent. If several points are almost equally near, True and False may give different ones.
+    exact: True: also give ``squared``. With "all", each number is then the exact value, rounded once; this takes about
+        ten times as long. False, with "all": the pairs are exact. A distance is 0 only if the triangles meet, and has a
+        relative error of at most 2^-32. The error of a normal is at most 2^-15. A point is off its triangle by at most
+        2^-45 of the pair's extent. If several points are almost equally near, True and False may give different points.
 
     Returns :class:`Distances`, sorted by objects, then by triangles; with ``labels`` in the order of the labels.
     Raises InputError for a wrong argument, and if there is nothing to measure. Raises MemoryError.

@@ -32,7 +32,7 @@ def _options(method: Any, options: Dict[str, Any]) -> Dict[str, str]:
 
 
 class Record:
-    """The answer of a run, and how it was found. Made by :meth:`Scene.run`."""
+    """The answer of :meth:`Scene.run`, and how it was found."""
 
     __slots__ = ("_record", "_options", "scene", "method")
 
@@ -63,11 +63,11 @@ class Record:
         return getattr(self._record, name)
 
     def missed(self) -> Optional[NDArray[np.int64]]:
-        """(k, 2): all pairs that collide and that culling removed; None with verify=False."""
+        """Returns all pairs that collide and that culling removed, (k, 2); None with verify=False."""
         return self._record.missed()
 
     def certificate(self) -> str:
-        """Evidence for every pair, as ``farcull run --certificate`` writes it; see :func:`check`.
+        """Returns evidence for every pair, as ``farcull run --certificate`` writes it; see :func:`check`.
         Raises InputError after a run with ``ignore`` or ``limit``."""
         return self._record.certificate()
 
@@ -160,7 +160,7 @@ def picture(
     view: str = "", up: str = "", zoom: bool = False,
     width: int = 900, height: int = 760, device: str = "", threads: int = 0, page: bool = False,
 ) -> Picture:
-    """Draws the triangles that collide, those that a method missed, and those that it kept although they do not collide.
+    """Draws triangles: those that collide, those that a method missed, and those that a method kept but that do not collide.
 
     - ``methods``: one for each panel: a name, or the options of :meth:`Scene.run` with ``method`` among them.
     - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and the upward direction.

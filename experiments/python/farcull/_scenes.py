@@ -156,7 +156,7 @@ class Frames:
         return self._frames.last - self._frames.first + 1
 
     def at(self, frame: int) -> Scene:
-        """The scene at a frame. A simulation first computes the frames before it."""
+        """Returns the scene at a frame. A simulation first computes the frames before it."""
         scene = Scene._of(self._frames.at(_arguments.integer("frame", frame, 0, 2**31 - 1)))
         _warn()
         return scene
@@ -167,7 +167,7 @@ class Frames:
 
 
 def builtin_scenes() -> List[str]:
-    """The names of the built-in scenes. Most take a size, as in "crowd:3000"."""
+    """Returns the names of the built-in scenes. Most names take a size, as in "crowd:3000"."""
     return _farcull.builtin_scenes()
 
 

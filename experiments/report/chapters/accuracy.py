@@ -1,5 +1,5 @@
-"""Missed pairs against resolution and against the candidates that are left, of FAR and every form of CULLIDE; and a
-picture of CULLIDE beside FAR where CULLIDE misses something."""
+"""Plots the missed pairs of FAR and of every form of CULLIDE, against the resolution and against the number of candidates.
+Adds a picture that shows CULLIDE beside FAR in a scene where CULLIDE misses pairs."""
 from frame import *  # noqa: F403
 
 OURS = ("FAR (OBB)", "Boxes")

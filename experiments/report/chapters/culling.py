@@ -1,4 +1,4 @@
-"""The number of candidates per colliding pair, for boxes of triangles, oriented boxes and the method boxes.
+"""Shows the number of candidates per colliding pair, for boxes of triangles, oriented boxes and the method boxes.
 
 Neighbours (triangles of an object that share a vertex) are not counted here, since libraries leave them out.
 """

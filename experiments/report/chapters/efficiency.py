@@ -1,5 +1,5 @@
-"""Frame by frame: the triangles that FAR and I-COLLIDE leave to exact tests, and the work of Quick-CULLIDE beside that
-of CULLIDE."""
+"""Compares, frame by frame, how many triangles FAR and I-COLLIDE leave to exact tests. Also compares the work of
+Quick-CULLIDE with the work of CULLIDE."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
 METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "Boxes", "I-COLLIDE"]
@@ -21,8 +21,8 @@ def measured(frames, method):
 
 
 def factors(frames, method, name, what="kept_triangles"):
-    """Returns a ratio for each frame in which the method keeps something: count `name` of I-COLLIDE / count `what` of the
-    method."""
+    """Returns a ratio for each frame in which the method keeps something: the count `name` of I-COLLIDE divided
+    by the count `what` of the method."""
     kept = frames[what][method]
     return tuple((frames[name][BOXES] / kept)[kept > 0].dropna())
 

@@ -92,8 +92,8 @@ def sample_of(groups):
 # ---- figures
 
 def cloud(name, points):
-    """Returns a Series. Each of `points` is an Estimate of the time, y, and the resolution. A line connects the points with
-    a resolution; other points are not connected."""
+    """Returns a Series. points: triples of an Estimate of the time, the value y, and the resolution. A line connects the
+    points with a resolution; other points are not connected."""
     out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points",
                  emphasis=name in OURS)
     for time, y, pixels in points:
@@ -115,8 +115,8 @@ def geometric_mean(values):
 
 
 def summary_of(groups):
-    """Returns points by the name of a method, for methods that were measured on every scene of FAR. A point is the geometric
-    mean of the ratios to the time of `exact`, and the share of errors."""
+    """Returns the points of each method that was measured on every scene of FAR, and the names of the scenes. A point has the
+    geometric mean, over the scenes, of time / time of `exact`; the share of errors; and the resolution."""
     groups = [g for g in groups if g.yardstick() and any(e.name == OURS[0] for e in g.entries)]
     found, out = [{(e.name, e.pixels): e for e in group.entries} for group in groups], {}
     for key in (key for key in (found[0] if len(found) > 1 else ()) if all(key in of for of in found)):
@@ -128,8 +128,8 @@ def summary_of(groups):
 
 
 def error_panels(titles, labels, all_points):
-    """Returns a panel for each scene. Methods with an error in a panel are points there; other methods are rows of its
-    strip. Each panel has the same rows. all_points: for each panel, points by the name of a method."""
+    """Returns a panel for each scene. In a panel, methods with an error are drawn as points. Methods without an error are
+    rows of the panel's strip. All strips have the same rows. all_points: for each panel, the points of each method."""
     shown = sorted({pixels for points in all_points for of in points.values() for *_, pixels in of if pixels > 0})[::2]
     panels, strips = [], []
     for title, label, points in zip(titles, labels, all_points):

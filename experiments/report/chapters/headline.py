@@ -1,5 +1,5 @@
-"""The first page: what CULLIDE, FAR and methods that draw nothing miss, and how long they take, as one figure, one table
-and three sentences."""
+"""Makes the first page: one figure, one table and three sentences. They show how many pairs CULLIDE, FAR and methods that
+draw nothing miss, and how long these methods take."""
 from frame import *  # noqa: F403
 
 PUBLISHED, STRICT = "CULLIDE as published", "CULLIDE, strict"

@@ -1,4 +1,4 @@
-"""What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs, meshes and questions.
+"""Shows what each contestant missed, reported wrongly, refused or crashed on, in a suite of labelled pairs, meshes, questions.
 
 A labelled pair of triangles is a question with its own answer. Pairs of a mesh are parts of one answer about the mesh. So
 counts of labelled pairs and counts of pairs of meshes are never added.
@@ -14,7 +14,7 @@ SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "re
          "no_memory", "not_asked", "twice", "answered", "differing", "timed", "zero", "not_zero", "negative", "off", "points",
          "points_off"]
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.csv"), encoding="utf-8") as known_file:
-    # For each method of farcull: the function that is called, and the documentation's words. Libraries have cards for this.
+    # For each method of farcull: the called function, and what its documentation says. Other libraries give this in cards.
     DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
 CARD = ["library", "means", "called", "says", "source", "use"]
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
@@ -25,7 +25,7 @@ QUESTIONS = ["distance", "self", "inside", "clash"]
 # ---- rows and their sums
 
 def with_families(rows):
-    """Splits each row into a row for each of its families. A new row has the family's parts and the sums over these parts. The
+    """Splits each row into a row for each of its families. A new row has the family's entries of `scores`, and their sums. The
     column `asks` is pairs, meshes or one of QUESTIONS; `family` is a name such as pairs/random."""
     out = []
     for row in rows.itertuples():
@@ -65,9 +65,9 @@ def differing(rows):
 
 
 def answers(rows, pairs, own):
-    """Returns missed pairs and their total, then false alarms and their total. If `pairs` is true, both totals are all answers.
-    For meshes, the totals are the colliding pairs and the reported pairs, since pairs that are apart are not counted. own: counts
-    only answers that the contestant's documentation promises."""
+    """Returns the number of missed pairs, a total, the number of false alarms, and a total. If `pairs` is true, both totals are
+    the number of answers. For meshes, the totals are the numbers of colliding and of reported pairs, since pairs that are apart
+    are not counted. own: counts only answers that the contestant's documentation promises."""
     asked, missed, false = (total(rows, name) for name in (
         ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
     return missed, asked, false, asked if pairs else asked - missed + false

@@ -70,8 +70,8 @@ def add_violations(chapter, rows):
 
 
 def add_deep_windows(chapter, rows):
-    """Adds the violations in deep windows. There a step of the buffer is longer than the chord of the ball at the corner of
-    a pixel, so all depths of a contact become one number in the buffer."""
+    """Adds the violations in deep windows. In a deep window, a step of the depth buffer is longer than the chord of the ball
+    at the corner of a pixel. So all depths of a contact become one number in the buffer."""
     ours = rows[rows.line == OURS]
     chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
     step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # 16 bits: a step is 2^-16, not 2^-24

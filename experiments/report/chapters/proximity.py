@@ -1,8 +1,8 @@
-"""Potential neighbour sets: their sizes, the neighbours that a grid loses, both numbers over frames, and time against the
-number of objects. Then errors of distances.
+"""Shows potential neighbour sets: their sizes, the neighbours that a grid loses, both numbers over frames, and time against
+the number of objects. Then shows errors of distances.
 
-A row is about the sets that a method leaves, or about the distances that a contestant returns. At rest (frame -1) the
-sets of a scene differ by seed and resolution, in motion by frame.
+A row of the study is about the sets that a method computes, or about the distances that a contestant returns. If objects
+rest (frame -1), the rows of a scene differ in seed and resolution. If objects move, the rows differ in the frame.
 """
 from frame import *  # noqa: F403: a chapter uses most of it
 

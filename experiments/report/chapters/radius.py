@@ -1,5 +1,5 @@
-"""How often the published radius misses something in scenes that were not constructed for it; then violated points of
-the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
+"""Shows how often the published radius misses pairs in scenes that were not constructed against it. Then shows, against
+the radius, violated points of the lemmas and missed pairs of FAR, with the published radius beside the budget radius."""
 from frame import *  # noqa: F403
 
 CLOSE = 0.96  # the second panel shows factors from CLOSE to 2 - CLOSE
@@ -103,8 +103,8 @@ def lemma_table(lemmas):
 
 def add_lemmas(chapter, lemmas):
     """Adds violations of the lemmas at the budget radius and above, and at the published radius. With fragment depth the lemmas
-    are proved, so each violation breaks a promise, even in a row without a promise. add_promises() has reported rows for which
-    breaks() is true."""
+    are proved, so each violation is reported as broken, even if the row has no promise. Rows for which breaks() is true are not
+    reported again, since add_promises() reports them."""
     safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
     for row in safe[safe.depth_mode != "fixed"].itertuples():
         violations = number(row, "violations")
@@ -145,8 +145,8 @@ def rate_of_rows(rows):
 
 
 def add_headline(chapter, runs, placements):
-    """Adds how often the published radius misses pairs in scenes that were not constructed against it, and how often in
-    constructed scenes. This finding comes first, since all others are about constructed points."""
+    """Adds a finding: how often the published radius misses pairs in scenes that were not constructed against it, and how often
+    in constructed scenes. This finding comes first, since all others are about constructed points."""
     published = runs[runs.published & (runs.depth_mode == "fragment")]
     constructed = published[published.scene == "pixel-corners"]
     natural = published[published.scene != "pixel-corners"]
@@ -220,8 +220,8 @@ def placement_table(placements):
 # ---- pairs
 
 def add_pairs(chapter, pairs):
-    """Adds the estimated rates of pairs that were drawn from strata. A rate is the probability of the stratum times the share
-    of placements with a miss. The probability is a sum over three views, so a placement in the strata of two views counts
+    """Adds estimated rates of misses for pairs that were drawn from strata. A rate is the probability of the stratum times the
+    share of placements with a miss. The probability is a sum over three views, so a placement in the strata of two views counts
     twice. The estimate is therefore too large by a factor of at most 1 + 2 corner_px."""
     out = Table("radius-pairs", "Estimated rate of placements of two single triangles in which FAR misses them: the "
                 "probability of the stratum from which they are drawn, times the share with a miss, with its 95 % interval, or "

@@ -1,4 +1,4 @@
-"""All scenes of the studies: where they come from, and how large their triangles are in pixels."""
+"""Lists all scenes of the studies: where they come from, and how large their triangles are in pixels."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
 MESHES, SIMULATED, DRAWN, CONSTRUCTED = "scanned or modelled", "simulated", "drawn", "constructed"

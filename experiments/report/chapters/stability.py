@@ -22,8 +22,8 @@ def extreme_of(row):
 
 
 def tracks_of(rows):
-    """Returns triples: a family with its axis; a method; the method's rows by the value of the family's number. Values are in
-    the order of the grid, from the harmless value to the extreme one. A cloth has several frames at one value."""
+    """Returns triples: a family of scenes with the name of its number; a method; the method's rows by the value of the number.
+    Values are in the order of the grid, from harmless to extreme. A cloth has several rows, its frames, for one value."""
     if rows.empty:
         return []
     extremes = [extreme_of(row) for row in rows.itertuples()]

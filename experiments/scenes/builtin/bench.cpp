@@ -198,8 +198,8 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> first, second;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
-    // Moves each new sliver so that it crosses the first object's last sliver. Moves every fourth
-    // one further, by twice its height, in a random direction.
+    // Moves each new sliver so that it crosses the first object's last sliver. Then moves every
+    // fourth sliver by twice its height in a random direction.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -247,7 +247,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1). The ulp there is 2^-53, so they are exact.
+// All coordinates are multiples of 2^-53 in [1/2, 1). The ulp there is 2^-53, so none is rounded.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -259,8 +259,8 @@ BuiltScene make_gap(const SceneParameters& parameters) {
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
     // Returns a point of the cell. u and v count eighths of the cell along two axes, `rise` counts
-    // quarters along the third axis, and `by` is added. The slope u / 32 + v / 64 keeps every
-    // triangle from being edge-on in a view along an axis, where it would cover no pixel.
+    // quarters along the third axis, and `by` is added there. The slope u / 32 + v / 64 keeps
+    // every triangle from being edge-on in a view along an axis, where it would cover no pixel.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

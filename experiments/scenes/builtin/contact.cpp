@@ -176,8 +176,8 @@ std::vector<Ball> heap(std::uint64_t count, Random& random) {
   return balls;
 }
 
-// The part with a bore, cut in two. Its triangles are like those of CAD programs: a flat face with
-// a round hole is a fan of slivers; a wall is quads of the part's full length, split in two.
+// A part with a bore is cut in two. Its triangles are like those of CAD programs: a fan of slivers
+// for a flat face with a round hole, and full-length quads, split in two, for a wall.
 
 // Vertices around a face, counterclockwise seen from outside the part.
 using Loop = std::vector<std::uint32_t>;

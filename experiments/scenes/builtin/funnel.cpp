@@ -27,8 +27,8 @@ constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in
 constexpr std::uint32_t kPleats = 14;
 
 // The points of the cloth at one distance from its middle. Seen from above, they form a
-// sine-generated curve: its direction swings by +-`swing` radians. The curve is as long as the flat
-// cloth's circle of this distance, but goes around a smaller circle.
+// sine-generated curve: its direction swings by +-`swing` radians. The curve is as long as the
+// circle of this radius in the flat cloth, but goes around a smaller circle.
 struct Ring {
   double radius = 0, height = 0;             // mean values
   std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of unit length

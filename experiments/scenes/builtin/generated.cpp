@@ -100,7 +100,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
     // Of every four slivers, three are placed so that they cross a sliver of the first object. One
-    // of the three is then moved away, by twice the smaller width. The fourth has a random place.
+    // of the three is then moved away by twice the smaller width. The fourth has a random place.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {

@@ -253,7 +253,7 @@ constexpr double kGrain = 0x1p-40;    // heights are multiples of kGrain
 std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; }
 
 // Returns a square of 18 by 18 cells of two triangles, with two flaps of 12 by 1 cells. The flaps
-// are joined to the grid lines i = 6 and i = 12, so that three triangles meet at the edges there. A
+// are joined to the grid lines i = 6 and i = 12, so three triangles meet at each edge of a joint. A
 // flap lies over the next row of cells. Vertices of flaps come last; make_shells() raises these
 // vertices.
 Mesh sheet() {

@@ -101,8 +101,8 @@ const std::vector<SceneSuffix>& scene_suffixes();
 /// All built-in scenes, generated ones first. The list is made once.
 const std::vector<BuiltinScene>& builtin_scenes();
 
-// The parts of builtin_scenes(). All paper_scenes() move. If the user names no frames, they are
-// halfway through their motion, except the cloth.
+// These functions return the parts of builtin_scenes(). All paper_scenes() move. If the user names
+// no frames, these scenes, except the cloth, are in the middle of their motion.
 std::vector<BuiltinScene> generated_scenes();
 std::vector<BuiltinScene> bench_scenes();
 std::vector<BuiltinScene> contact_scenes();
@@ -154,7 +154,7 @@ class MovingScene {
 
   /// Returns the scene at a frame, validated. Every call returns the same Scene object. Its
   /// triangles and vertices stay in the same memory if triangles and objects did not change since
-  /// the previous call. The ground of a suffix does not move. Throws Error as Motion does.
+  /// the previous call. A ground added by a suffix does not move. Throws Error as Motion does.
   const Scene& at(long frame);
 
   /// Returns the motion's notes on the last frame from at(), such as energies. Most motions have no

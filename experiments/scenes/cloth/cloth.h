@@ -91,8 +91,8 @@ struct Energies {
 };
 Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity);
 
-/// A step from x0 with velocity v0. The new positions minimize a strictly convex function F
-/// (docs/cloth.md, "A step").
+/// A time step from positions x0 and velocities v0. The new positions minimize a strictly convex
+/// function F (docs/cloth.md, "A step").
 struct Step {
   const Model& model;
   Eigen::VectorXd x0;
@@ -124,12 +124,12 @@ void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& 
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
-/// Calls add() with the blocks that do not depend on x: inertia, air and bending. May pass the same
-/// pair of vertices several times, in any order. Passes the block of a vertex with itself in full.
+/// Calls add(i, j, block) with the terms of blocks that do not depend on x: inertia, air and
+/// bending. Passes each term once, for (i, j) or (j, i). A block may have several terms.
 void for_constant_blocks(
     const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
-/// Returns the second derivatives of a spring's energy with respect to the position of one end.
-/// Both ends have the same block. The mixed derivatives are its negative. Positive semidefinite.
+/// Returns the second derivatives of a spring's energy with respect to the position of one end, a
+/// positive semidefinite block. The other end has the same block; the mixed block is its negative.
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
 /// Return the contributions of contact and friction to a vertex's block; positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
@@ -154,14 +154,14 @@ struct Minimum {
   std::string reason = {};   // why the minimization did not converge
 };
 
-/// Minimizes the functions of steps. Keeps the sparsity pattern of the model's matrix between
+/// Minimizes the function F of each Step. Keeps the sparsity pattern of the model's matrix between
 /// steps, and whether the last step needed interior points. The model must outlive the Solver.
 class Solver {
  public:
   explicit Solver(const Model& model);
 
-  /// Minimizes from x0 by Newton's method with a line search. If this method gets stuck, minimizes
-  /// by interior points, and then by Newton's method from the result.
+  /// Minimizes from step.x0 by Newton's method with a line search. If this method gets stuck,
+  /// minimizes by an interior-point method, and then by Newton's method from that result.
   Minimum minimize(const Step& step);
 
   /// Returns the largest residual at which a step has converged, N: the setting `tolerance`, plus
@@ -222,13 +222,13 @@ class Cloth {
   const Scene& scene() const;
 
   /// Makes one time step. If a step does not converge, every vertex stays where it was, at speed 0.
-  /// The kinetic energy is then lost; the report says so.
+  /// The kinetic energy is then lost, and ClothReport::warning is set.
   ClothReport step();
 
   const ClothReport& report() const;
 
   ClothState state() const;
-  /// Sets the state, and recomputes the energies of its report. If velocities are not finite, the
+  /// Sets the state, and recomputes the energies in its report. If velocities are not finite, the
   /// next step does not converge. Throws std::logic_error unless positions and velocities have
   /// three numbers for each vertex.
   void restore(const ClothState& state);

@@ -12,8 +12,8 @@
 namespace farcull::cloth {
 namespace {
 
-// Model::crimp / (weight of a cell * side of a cell). So an edge that is slack by 1e-4 of its
-// length pulls with 1e-4 of the cell's weight.
+// The ratio of Model::crimp to the product of a cell's weight and side. So an edge that is slack by
+// 1e-4 of its length pulls with 1e-4 of the cell's weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {

@@ -52,9 +52,9 @@ class Interior {
   // The mean of the complementarities, J.
   double complementarity() const;
 
-  // Sets up the equations of the next direction, which aims at complementarity `target`. Eliminates
-  // the unknowns of springs and contacts. The next four functions return the blocks and forces that
-  // springs and contacts add to the equations of the positions.
+  // Sets up the linear equations for a search direction that aims at complementarity `target`.
+  // Eliminates the unknowns of springs and contacts. The next four functions return the blocks and
+  // forces that springs and contacts add to the equations of the positions.
   void linearize(const Eigen::VectorXd& x, double target);
   const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
   const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
@@ -69,7 +69,7 @@ class Interior {
   }
 
   // Moves the positions and all other unknowns along the direction, as far as the cones allow.
-  // Returns the fraction that it moved, at most 1. Precondition: linearize() was called at x.
+  // Returns the moved fraction of `direction`, at most 1. Precondition: linearize() ran at x.
   double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
 
  private:
@@ -301,8 +301,8 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
 double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  // A stored coordinate errs by up to 2^-53 |x|. An error of either end of a spring changes its
-  // force by `stretch` times the error. A vertex has at most 8 springs and 3 coordinates.
+  // A coordinate has a rounding error of at most 2^-53 |x|. It changes a spring's force by at most
+  // (stiffness + buckling_load) times as much. A vertex has at most 8 springs and 3 coordinates.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;

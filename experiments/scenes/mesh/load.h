@@ -1,4 +1,4 @@
-// Meshes, and their files: OBJ, OFF, PLY and STL, also compressed by gzip. OFF is written as well.
+// Reads meshes from OBJ, OFF, PLY and STL files, also compressed by gzip, and writes OFF files.
 // Coordinates are never rounded to float: text is rounded once, to double, and binary floats are
 // widened exactly. Indices and sizes are checked against the contents of a file. A size in a header
 // alone never causes an allocation.
@@ -36,14 +36,14 @@ struct MeshPart {
 enum class MeshFormat { kObj, kOff, kPly, kStl };
 
 /// Returns the format that the extension of a path names, in upper or lower case. A final ".gz" is
-/// ignored. For other extensions throws foreign_mesh(path), or else an Error naming the path.
+/// ignored. For other extensions, throws foreign_mesh(path), or, if that is empty, another Error.
 MeshFormat mesh_format(const std::string& path);
-/// Returns the format of "obj", "off", "ply" or "stl". Throws Error naming --format for other
-/// names.
+/// Returns the format for the name "obj", "off", "ply" or "stl". Throws Error naming --format for
+/// other names.
 MeshFormat named_format(const std::string& name);
 bool has_mesh_extension(const std::string& path);
-/// Returns an Error if the path's extension, with or without .gz, names a known format that is not
-/// read. The Error says how to convert the file. Returns empty for other extensions.
+/// Returns an Error if the path's extension, with or without .gz, is that of a known format that
+/// farcull cannot read. The Error tells how to convert the file. Otherwise returns empty.
 std::optional<Error> foreign_mesh(const std::string& path);
 
 /// Returns at most 100 sentences on data that load_mesh() skipped since the previous call, as in
@@ -55,21 +55,21 @@ void add_reading_notes(const std::string& path, const std::vector<std::string>& 
 /// - A polygon of n vertices becomes n - 2 consecutive triangles, by triangulate(). A simple planar
 ///   polygon keeps its area exactly, convex or not. Mesh::folded lists folded polygons.
 /// - Vertices that are not finite and that no face uses become 0, 0, 0. Mesh::notes counts them.
-/// - OBJ: the last `o` or `g` names the group of the faces that follow. Equal `g` of different `o`
-///   are different groups. ASCII STL: each solid is a group, even if two solids have the same name.
-///   Other formats: one group, "default".
+/// - OBJ: the last `o` or `g` names the group of the faces that follow. Equal `g` under different
+///   `o` are different groups. ASCII STL: each solid is a group, even if two solids have the same
+///   name. Other formats: one group, "default".
 /// - STL: corners at exactly the same position become one vertex; 0.0 and -0.0 count as equal.
 /// - Contents compressed by gzip are decompressed, whatever the file's name.
 /// Throws Error naming the path, and the line if the format has lines, in these cases: the file is
-/// missing, not a regular file, unreadable, malformed, or shorter or longer than it claims; a face
-/// has a corner that is not finite, an index out of range, or fewer than 3 vertices; there are no
-/// triangles, or more than 2^32 - 1; gunzip() refuses the data (text.h).
+/// missing, not a regular file, unreadable, malformed, or shorter or longer than its header says; a
+/// face has a corner that is not finite, an index out of range, or fewer than 3 vertices; there are
+/// no triangles, or more than 2^32 - 1; gunzip() refuses the data (text.h).
 Mesh load_mesh(const std::string& path);
 
 /// Does the same as load_mesh() for any bytes in memory. name: named in errors, like a path.
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name);
 
-/// Returns the part as OFF. Numbers have 17 significant digits, which identify a double.
+/// Returns the text of an OFF file of the part. Numbers have 17 digits, which identify a double.
 std::string off_text(const MeshPart& part);
 /// True if a name has exactly one placeholder for a number: %d, or %0Nd for N digits (1 to 9) with
 /// leading zeros.
@@ -85,9 +85,9 @@ struct MeshReading {
 
 class MeshCache {
  public:
-  /// Without frames: every name is the name of a file.
+  /// Makes a cache without frames. Every name is the name of a file.
   MeshCache() = default;
-  /// With frames: a numbered name stands for the file of the current frame, see set_frame().
+  /// Makes a cache with frames. A numbered name stands for the file of the frame of set_frame().
   explicit MeshCache(long first_frame) : frame_(first_frame) {}
   /// Precondition: the cache was constructed with a first frame.
   void set_frame(long frame) { frame_ = frame; }
@@ -123,8 +123,8 @@ class MeshCache {
 /// Returns the name of a file without its folder, without .gz and without its extension.
 std::string mesh_stem(const std::string& path);
 
-/// Collects vertices and polygons, checks them and triangulates the polygons. `line`: number of the
-/// line in the file; 0 for formats without lines.
+/// Collects vertices and polygons, checks them and triangulates the polygons. The parameter `line`
+/// is the number of a line in the file; 0 for formats without lines.
 class MeshBuilder {
  public:
   /// first: the number of the first vertex and of the first face in messages.
@@ -138,8 +138,8 @@ class MeshBuilder {
   /// is another group, and gets the suffix #2, #3 and so on.
   void set_group(std::string_view group_name, std::string_view within = {});
   /// Adds a polygon. corners: indices of vertices from 0. Throws Error if there are fewer than 3
-  /// corners, if a corner is not a vertex added before or is not finite, if the triangles exceed
-  /// 2^32 - 1, or if the polygon is Triangulation::too_large.
+  /// corners, if a corner is not a vertex added before or is not finite, if the mesh would have
+  /// more than 2^32 - 1 triangles, or if the polygon is Triangulation::too_large.
   void add_face(std::span<const std::uint32_t> corners, long line);
   void note(std::string text) { mesh_.notes.push_back(std::move(text)); }
   /// Throws Error if there is no triangle.
@@ -166,10 +166,10 @@ bool is_binary_stl(std::string_view bytes);
 
 /// Returns the sign of the area of the triangle a, b, c in the plane of the coordinates u (to the
 /// right) and v (up): 1 for a left turn at b, -1 for a right turn, 0 if the three points are
-/// collinear in this plane. Exact for finite doubles of any size.
+/// collinear in this plane. The sign is exact for all finite doubles.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
-/// Returns turn(), computed by rounded arithmetic; 0 if the sign is not certain. This happens if
-/// the points are close to a line, or if products of differences overflow or underflow.
+/// Returns turn(), computed by rounded arithmetic; 0 if the sign is uncertain. A sign is uncertain
+/// if the points are close to a line, or if products of differences overflow or underflow.
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 using Turn = int (*)(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 
@@ -180,14 +180,14 @@ enum class Triangulation {
   folded,     // the polygon is not simple in its plane: the triangles overlap or face both ways
 };
 
-/// Triangulates a polygon. Triangles are positions in `corners`; there are size - 2, or none if the
-/// polygon is too_large. Signs are exact, since a triangle outside the polygon would collide with
-/// objects that the polygon does not touch. The polygon is cut in its projection along a coordinate
-/// axis. The normal's component on this axis is the largest, or at least half as large. Triangles
-/// have the orientation of the polygon; some may be degenerate if corners are collinear. The result
-/// is `whole` for a simple planar polygon, for a nonplanar one with a simple projection, for
-/// collinear corners, and, if possible, for a polygon that touches itself along a seam. by:
-/// replaces turn() in tests. Precondition: at least 3 corners, all finite.
+/// Triangulates a polygon. Appends corners.size() - 2 triangles, or none if the polygon is
+/// too_large. Triangles are indices into `corners`. Signs are exact, since a triangle outside the
+/// polygon would collide with objects that the polygon does not touch. The polygon is projected
+/// along a coordinate axis. On this axis, the normal has its largest component, or one at least
+/// half as large. Triangles have the orientation of the polygon; some may be degenerate if corners
+/// are collinear. Returns `whole` for a simple planar polygon, for a nonplanar one with a simple
+/// projection, for collinear corners, and, if possible, for a polygon that touches itself along a
+/// seam. by: replaces turn() in tests. Precondition: at least 3 corners, all finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 
@@ -202,13 +202,13 @@ struct WeldTolerance {
     return value * (relative ? (box.hi - box.lo).stableNorm() : 1);
   }
 };
-/// Reads "0.001", in the units of the mesh, or "1e-7*size". Throws Error naming the option.
+/// Reads "0.001", in the units of the mesh, or "1e-7*size". Throws Error naming `option`.
 WeldTolerance parse_weld(const std::string& text, const char* option = "--weld");
 
-/// Merges the vertices that triangles use, in ascending order, and returns how many were merged. A
-/// vertex becomes the nearest vertex kept before, if their distance (in double) is at most the
-/// tolerance; of several nearest vertices the first. Otherwise the vertex is kept. Triangles stay
-/// in order, even if they become segments or points.
+/// Visits the vertices that triangles use, in ascending order. Merges a vertex into the nearest
+/// vertex kept before, if their distance (in double) is at most the tolerance; in a tie, into the
+/// first such vertex. Otherwise keeps the vertex. Triangles stay in order, even if they become
+/// segments or points. Returns the number of merged vertices.
 std::uint64_t weld(Mesh& mesh, const WeldTolerance& tolerance);
 
 struct WeldHint {
@@ -217,10 +217,10 @@ struct WeldHint {
   Vec3 place;                    // one end of an open edge
 };
 /// Returns the least tolerance among 1e-13, 1e-12, .. 1e-5 at which merging the ends of the
-/// object's open edges leaves no open edge. Empty if there is none, or if no edge is open.
+/// object's open edges leaves no open edge. Returns empty if there is none, or if no edge is open.
 std::optional<WeldHint> weld_hint(const Scene& scene, const Object& object);
 
-/// Hash of a position. Callers add 0.0 to coordinates, so that -0.0 becomes 0.0 and hashes alike.
+/// Hash of a position. Callers add 0.0 to coordinates, so that -0.0 and 0.0 have the same hash.
 struct PositionHash {
   std::size_t operator()(const std::array<double, 3>& at) const {
     std::uint64_t hash = 0;

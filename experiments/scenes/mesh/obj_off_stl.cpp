@@ -1,7 +1,7 @@
 // Reads Wavefront OBJ, OFF and STL, and writes OFF as Geomview does. Skips materials, normals,
 // colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces, since
-// skipping them would lose geometry. A binary STL file may begin with "solid", like an ASCII one,
-// so the length of a file is checked before its contents.
+// skipping them would lose geometry. A binary STL file may begin with "solid", like an ASCII one.
+// So an STL file whose length fits its header is read as binary.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,8 +66,8 @@ void refuse_other_format(std::string_view bytes, const std::string& name) {
                 "rename it by its format, or get it again");
 }
 
-// Throws Error if lines end with LF and there is a CR without LF. Such a CR would count as a blank.
-// Text after it would then be read as part of a comment or a vertex line, and be lost.
+// Throws Error if lines end with LF, but a CR is inside a line. The CR would count as a blank. The
+// text after the CR would then be read as part of a comment or a vertex line, and be lost.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -162,8 +162,8 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Reads a number of elements, and checks that so many elements fit into the rest of the bytes. An
-// element takes at least `bytes_each` bytes of text; the last one may lack its newline.
+// Reads a number of elements. Throws Error if the remaining bytes are too few for them. An element
+// takes at least `bytes_each` bytes of text; the last element may lack its newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
   if (value < 0) in.fail(fmt::format("the number of {} is {}", what, value), kDamaged);
@@ -229,7 +229,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
     const std::int64_t size = in.integer("the number of vertices of a face");
     if (size < 0) in.fail(fmt::format("a face of {} vertices", size), "correct the face");
     corners.clear();
-    // Corners are added one by one. So a size that is too large fails at the end of the line.
+    // Reads the corners one by one. If `size` is too large, reading fails at the end of the line.
     for (std::int64_t k = 0; k < size; ++k) {
       const std::int64_t index = in.integer("a vertex index of the face");
       if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices) {
@@ -285,7 +285,7 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// A text has no NUL bytes. A binary file has NUL bytes in its header or in its attribute bytes.
+// True if one of the first 4096 bytes is NUL. Binary STL has NULs in its headers; text has none.
 bool has_nul(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') != bytes.npos; }
 
 bool is_text(std::string_view bytes) {
@@ -334,7 +334,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Reads the expected words, which may be on several lines. Throws Error if other words follow.
+// Reads the next words, perhaps from several lines. Throws Error if they differ from `words`.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -347,8 +347,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line. A file may have only one line, so stops before a word `stop` if
-// `after` is among the next few words.
+// Reads the rest of the line. Stops before a word `stop` if one of the next few words is `after`,
+// since a file may have only one line.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

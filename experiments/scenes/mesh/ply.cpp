@@ -252,8 +252,8 @@ struct Faces {
 };
 
 /// Converts triangle strips into triangles. Each vertex forms a triangle with the two vertices
-/// before it. Every second triangle is reversed, so that all have one orientation. The index -1
-/// begins a strip. Triangles that name a vertex twice only join parts of a strip, and are left out.
+/// before it. Every second triangle is reversed, so that the triangles of a strip have one
+/// orientation. The index -1 begins a new strip. Triangles that name a vertex twice are left out.
 class Strip {
  public:
   void add(std::int64_t index, long line, Faces& faces) {

@@ -1,5 +1,5 @@
-// Triangulates polygons by ear clipping (Meisters: Polygons have ears, 1975). Computes each sign in
-// double. If an error bound leaves a sign uncertain, computes this sign again without rounding.
+// Triangulates polygons by ear clipping (Meisters: Polygons have ears, 1975). The sign of an area
+// is computed in double. If rounding might change the sign, the sign is computed again exactly.
 #include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ constexpr std::size_t kMaxEarCorners = 8192;
 constexpr double kUnit = 0x1p-53;  // relative rounding error of one operation
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 
-// A sum of products of finite doubles without rounding, in fixed point. Bit 0 is 2^-2148, the
-// square of the least double. The sum of 2^32 products has at most 2148 + 2048 + 32 bits.
+// Adds products of finite doubles exactly, in fixed point. The lowest bit is 2^-2148, the square of
+// the least positive double. A sum of 2^32 products has at most 2148 + 2048 + 32 bits.
 class ExactSum {
  public:
   // Adds the product a b, or subtracts it if `minus`.
@@ -103,17 +103,17 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// Returns the plane perpendicular to the axis on which the polygon's normal has its largest
-// component, or one at least half as large. The computed normal is rounded. If the rounded
-// component m of largest size is not above `bound`, exact areas decide.
+// Returns a plane perpendicular to a coordinate axis. On this axis, the polygon's normal has its
+// largest component in absolute value, or one at least half as large. The normal is computed in
+// double. If its largest component m does not exceed `bound` in size, exact areas decide.
 //
-// With n corners there are 2 n products of two differences. A product is rounded three times, and
-// then takes part in at most 2 n additions. So it errs by less than (4 n + 8) kUnit of its computed
-// value, and by kTiny / 2 more if it underflows.
+// With n corners, each component is a sum of at most 2 n products of two differences. A product is
+// rounded three times, and then takes part in at most 2 n additions. So each product adds an error
+// below (2 n + 4) kUnit times its absolute value, plus kTiny / 2 if it underflows.
 //
-// Let e be the error of m, and f the error of another component. `bound` is at least 2 e + f. So if
-// m exceeds `bound`, the sign of m is right, and the true value on this axis is at least m - e. The
-// true value of the other component is at most m + f, which is less than 2 (m - e).
+// Let e bound the error of m, and f the error of another component. `bound` is at least 2 e + f. If
+// |m| exceeds `bound`, the sign of m is right. In absolute value, the exact component is at least
+// |m| - e, and the exact other component is at most |m| + f, which is below 2 (|m| - e).
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // the previous corner minus the first one
@@ -199,8 +199,8 @@ struct Ring {
     classify(next[i]);
   }
 
-  // True if a polygon without right turns winds around once. The corners of such a polygon rise in
-  // lexicographic order to one highest corner, and fall after that corner.
+  // True if the polygon winds around once. Precondition: it has no right turns. The corners of a
+  // polygon that winds once rise in lexicographic order to one highest corner, and then fall.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
@@ -268,8 +268,8 @@ struct Ring {
 
 int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   // Each product has three roundings, so its relative error is at most 3 kUnit to first order. An
-  // underflow adds an error of kTiny / 2. The factor 4 kUnit covers higher orders and the rounding
-  // of the bound. If anything overflows, the bound is infinite or NaN, and the comparison is false.
+  // underflow adds an error of at most kTiny / 2. The factor 4 kUnit covers higher orders and the
+  // bound's own rounding. After an overflow, the bound is infinite or NaN, and the test is false.
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double area = left - right;

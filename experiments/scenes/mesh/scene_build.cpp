@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
-// Returns the rows of a rotation matrix, from a quaternion, or from axis and angle by Rodrigues'
-// formula. Its diagonal has k^2 + c (1 - k^2), for each k of the unit axis. 1 - k^2 is computed as
-// the sum of the other squares, so a rotation about a coordinate axis has exactly c, s, 0 and 1 in
-// its matrix. Dividing by the largest component first avoids overflow and underflow.
+// Returns the rows of the rotation matrix of a quaternion, or of an axis k and an angle by
+// Rodrigues' formula. Computes 1 - k_i^2, for each i, as the sum of the other two squares. So for
+// a coordinate axis the matrix has exactly the entries 0, 1, cosine and +-sine. The quaternion or
+// axis is first divided by its largest component, to avoid overflow and underflow.
 std::array<Vec3, 3> rotation_rows(const Placement::Rotation& rotation) {
   if (rotation.quaternion) {
     auto [x, y, z, w] = *rotation.quaternion;
@@ -411,8 +411,8 @@ Mesh refined(Mesh mesh, std::uint64_t wanted) {
       triangles.push_back(t);
     };
     for (const std::uint32_t t : of) {
-      // Rotates the corners so that a, b is the edge. Replaces (a, b, c) by (a, m, c) and (m, b,
-      // c), with the midpoint m.
+      // Orders the corners as a, b, c, so that a and b are the ends of the edge. Replaces the
+      // triangle by (a, m, c) and (m, b, c), where m is the edge's midpoint.
       std::array<std::uint32_t, 3> c = mesh.triangles[t];
       const auto on_edge = [&](std::uint32_t v) { return v == edge.a || v == edge.b; };
       while (!on_edge(c[0]) || !on_edge(c[1])) std::rotate(c.begin(), c.begin() + 1, c.end());

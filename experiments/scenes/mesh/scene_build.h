@@ -13,9 +13,9 @@
 
 namespace farcull {
 
-/// How points are moved: by a matrix, or by scaling, then rotation, then translation. Each step is
-/// computed in double and about the origin. A step that is absent or changes nothing is skipped, so
-/// an identity keeps every bit, even the sign of -0.0.
+/// A transformation of points: a matrix, or scaling, then rotation, then translation. Scaling and
+/// rotation are about the origin. All steps are computed in double. A step that is absent or
+/// changes nothing is skipped, so an identity keeps every bit, even the sign of -0.0.
 struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
@@ -30,7 +30,7 @@ struct Placement {
   std::optional<Vec3> translate;
 };
 
-/// Applies the placement to every point. Precondition: finite numbers and an axis that is not 0.
+/// Applies the placement to every point. Precondition: its numbers are finite, and its axis not 0.
 std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement);
 
 enum class Split {
@@ -46,11 +46,11 @@ class SceneBuilder {
   /// Errors name `where`: the scene file, or the name of the scene.
   SceneBuilder(std::string scene_name, std::string where);
 
-  /// Appends a mesh as one object or several. Within an object triangles keep the order of the
-  /// file. A part is called NAME/GROUP or NAME/1, NAME/2, ...; a mesh with a single part keeps
-  /// NAME. `self`: each part is tested against itself as well. A name that is in use gets the first
-  /// free suffix "#2", "#3", .... Scene::folded lists the folded faces. Throws Error if a placed
-  /// coordinate is not finite or the scene would have more than 2^32 - 1 triangles or vertices.
+  /// Appends a mesh as one object or several. Within an object, triangles keep the order of the
+  /// file. A single object is called NAME; several are NAME/GROUP, or NAME/1, NAME/2, .... A name
+  /// in use gets the first free suffix "#2", "#3", .... `self`: each object is also tested against
+  /// itself. Scene::folded lists the folded faces. Throws Error if a placed coordinate is not
+  /// finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split = Split::kNone,
            const Placement& placement = {}, bool self = false);
   /// Returns the objects added since the previous call as a validated scene, and removes them from
@@ -86,8 +86,8 @@ class PartMaker {
   MeshPart part_;
 };
 
-/// Appends an object with vertices of its own, unchanged and unchecked. Corners of triangles are
-/// positions in `vertices`.
+/// Appends an object with its own copy of the vertices. Does not check the arguments. The triangles
+/// are indices into `vertices`.
 void append_object(const std::string& name, std::span<const Vec3> vertices,
                    std::span<const std::array<std::uint32_t, 3>> triangles,
                    std::span<const std::uint32_t> source_face, Scene& scene);
@@ -140,8 +140,8 @@ class Random : public RandomNumbers {
       if (p.squaredNorm() > 0.01) return p / p.norm();
     }
   }
-  /// Returns a number in [2^-octaves, 1). Each octave is equally likely, and the number is uniform
-  /// in its octave.
+  /// Returns a random number in [2^-octaves, 1). Each interval [2^-k, 2^(1-k)) is equally likely,
+  /// and the number is uniform in its interval.
   double over_octaves(std::uint32_t octaves) {
     const auto octave = static_cast<int>(below(octaves));
     return std::ldexp(between(0.5, 1), -octave);
@@ -190,8 +190,8 @@ Mesh sphere(int level);
 /// at (i/cells, j/cells, 0), with i and j from 0 to `cells`.
 Mesh grid(std::uint32_t cells);
 
-/// The corners of a square parallel to the x-y plane, counterclockwise seen from above. Its
-/// triangles are (0, 1, 2) and (0, 2, 3).
+/// Returns the corners of a square parallel to the x-y plane, counterclockwise seen from above. The
+/// square's triangles are (0, 1, 2) and (0, 2, 3).
 std::array<Vec3, 4> square(const Vec3& centre, double side);
 
 /// A torus about the z axis with radii `ring` and `tube`. It has `around` steps along the ring and

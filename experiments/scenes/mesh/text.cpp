@@ -48,8 +48,8 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// For a decimal number beyond the range of doubles: true if it is too small, false if too large.
-// Doubles range from 5e-324 to 2e308, so the sign of the decimal exponent decides.
+// True if a decimal number is too small for a double, false if it is too large. Precondition: it is
+// outside of 5e-324 to 2e308, the range of doubles. So the sign of its exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
   long exponent = 0;

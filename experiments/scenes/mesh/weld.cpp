@@ -9,9 +9,9 @@
 namespace farcull {
 namespace {
 
-// Gives points within the tolerance of each other the same number. Stores points in a grid, and
-// searches the 27 cells around a point. The cells are twice as wide as the tolerance, so that
-// rounding moves no near point out of these 27 cells.
+// Finds stored points that are within the tolerance of a given point. Stores points in the cells of
+// a grid, and searches the 27 cells around the given point. The cells are twice as wide as the
+// tolerance, so that rounding moves no near point out of these 27 cells.
 class NearPoints {
  public:
   // tolerance: finite, >= 0.
@@ -60,8 +60,8 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // turns -0.0 into 0.0
-    // With a tolerance of 0, each position is a cell. From 2^53 on, neighbouring cells may have the
-    // same number in double. But different positions are then at least a cell apart.
+    // If the tolerance is 0, each position is a cell. Cell numbers above 2^53 are rounded, so cells
+    // may share a number. But different positions are then at least a cell apart.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }
