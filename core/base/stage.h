@@ -72,7 +72,7 @@ enum class Reason : std::uint8_t {
   few_to_test,          // n triangles are left (n <= m): testing them is faster than culling
   patches_cut,          // objects are cut into n patches of at most m triangles
   patches_whole,        // no object tested against itself has more than m triangles
-  few_objects,          // only n objects take part (n < m): few objects seldom hide each other
+  asked_singly,         // objects are not tested as wholes: their triangles are tested anyway
   rounds_given,         // the option `rounds` is n
   all_views,            // a triangle is culled if every view clears it
   little_culled,        // the last view culled n of m triangles, too few for another view
@@ -80,7 +80,7 @@ enum class Reason : std::uint8_t {
   clusters_given,       // the sizes of clusters are given
   clusters_large,       // clusters are used: occlusion queries on more than n triangles
   clusters_small,       // no clusters are used: only n triangles take part (n <= m)
-  flags,                // no clusters, no object level: nothing gained without occlusion queries
+  clusters_flags,       // no clusters are used: they save nothing without occlusion queries
   sweep,                // boxes of n objects with m triangles overlap; k, l: see Stage
   not_cleared,          // takes the pairs that boxes found and drawing did not clear
   join_kept,            // compares boxes of the kept triangles

@@ -78,7 +78,7 @@ std::vector<std::uint32_t> cluster_numbers(std::span<const std::uint32_t> order,
 }
 
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles) {
-  if (!occlusion_queries) return {.sizes = {}, .reason = Reason::flags};
+  if (!occlusion_queries) return {.sizes = {}, .reason = Reason::clusters_flags};
   if (triangles <= kClusterLeast)
     return {.sizes = {}, .reason = Reason::clusters_small, .n = triangles, .m = kClusterLeast};
   return {.sizes = {kClusterSize}, .reason = Reason::clusters_large, .n = kClusterLeast};

@@ -60,17 +60,8 @@ bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
 
-// Returns the number of objects that take part if there are too few for an object level. Else 0.
-std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
-                              const CullSettings& settings) {
-  if (settings.least_objects == 0 || settings.objects_alone || !owned_by_objects(scene, settings))
-    return 0;
-  const std::uint64_t objects = count_objects(scene, regions.triangles);
-  return objects < settings.least_objects ? static_cast<std::uint32_t>(objects) : 0;
-}
-
-bool has_object_level(const Scene& scene, const Regions& regions, const CullSettings& settings) {
-  return owned_by_objects(scene, settings) && too_few_objects(scene, regions, settings) == 0;
+bool has_object_level(const Scene& scene, const CullSettings& settings) {
+  return (settings.object_level || settings.objects_alone) && owned_by_objects(scene, settings);
 }
 
 // Returns a state for each view. Its window is empty if doubles cannot resolve the view's pixels.
@@ -101,14 +92,9 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .out = live,
          .unit = Unit::triangles});
   }
-  // This stage is reported once per plan, and only if something is drawn.
-  const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
-  if (few > 0) {
-    const bool flags = settings.least_objects == kNoObjectLevel;
+  if (any && !has_object_level(scene, settings) && owned_by_objects(scene, settings)) {
     stages.push_back({.kind = StageKind::objects,
-                      .reason = flags ? Reason::flags : Reason::few_objects,
-                      .n = flags ? 0 : few,
-                      .m = flags ? 0 : settings.least_objects,
+                      .reason = Reason::asked_singly,
                       .in = live,
                       .out = live,
                       .unit = Unit::triangles});
@@ -269,8 +255,7 @@ class Culling {
   }
 
   bool asks_objects() const {
-    return (round_ == 1 || settings_.objects_alone) &&
-           farcull::has_object_level(scene_, regions_, settings_);
+    return (round_ == 1 || settings_.objects_alone) && farcull::has_object_level(scene_, settings_);
   }
   bool asks_clusters() const { return round_ == 1 && !settings_.objects_alone; }
   bool asks_triangles() const { return !settings_.objects_alone; }
@@ -471,7 +456,7 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   const std::size_t live = regions.triangles.size();
   std::vector<Stage> stages = opening_stages(scene, regions, settings, places, live);
   std::vector<std::uint32_t> levels;
-  if (has_object_level(scene, regions, settings)) levels.push_back(kObjectLevel);
+  if (has_object_level(scene, settings)) levels.push_back(kObjectLevel);
   if (!has_own_owners(scene, settings)) {
     for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(size);
   }

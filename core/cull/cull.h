@@ -93,9 +93,7 @@ struct CullSettings {
   bool objects_alone = false;
   bool full = false;         // nothing is left out
   std::uint32_t enough = 0;  // no further view if at most this many triangles are live; 0: no limit
-  /// The object level runs only if at least this many objects take part; 0: always;
-  /// kNoObjectLevel: never.
-  std::uint32_t least_objects = 0;
+  bool object_level = true;  // false: no object level, unless `objects_alone` is set
   /// For a value w > 0, a view follows only if the last view (with ClearRule::all, a round only if
   /// the last round) culled at least 1/w of the live triangles. 0: no such rule.
   std::uint32_t worth_a_view = 0;
@@ -134,8 +132,8 @@ struct CullResult {
 /// - passes and visits whose stored set is unchanged (quick)
 /// - levels and visits if no triangle is left
 /// - all steps after a view that leaves at most `enough` triangles
-/// - the object level of few objects (`least_objects`), and all steps after a view that culled
-///   little (`worth_a_view`); these two change which bits are set, but no bit becomes wrong
+/// - all steps after a view that culled little (`worth_a_view`). This and leaving out the object
+///   level (`object_level`) change which bits are set, but no bit becomes wrong
 /// Throws Error if the resolution is beyond the canvas's limit, or if a pass is not known to have
 /// run. Throws std::logic_error if the length of settings.bits or settings.owners does not fit the
 /// scene, or if `objects_alone` is set and objects are not the owners.

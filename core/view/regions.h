@@ -20,12 +20,6 @@ struct Regions {
 /// If at most this many triangles remain, further views and finer offsets are left out. Exact tests
 /// of these triangles take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
-/// With fewer objects, no object is tested as a whole. A test of whole objects draws all triangles
-/// twice. Among few overlapping objects, one object seldom hides all of another.
-constexpr std::uint32_t kFewObjects = 16;
-/// More objects than any scene has, so no object is tested as a whole. Without occlusion queries,
-/// testing each triangle of an object costs no more than testing the object.
-constexpr std::uint32_t kNoObjectLevel = UINT32_MAX;
 /// A further view follows only if the last view culled at least 1/kWorthAView of the triangles that
 /// were live before it. On two CPU cores, a view takes a third of the time of exact tests of its
 /// triangles (docs/methods.md, "What a run leaves out").

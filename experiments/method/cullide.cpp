@@ -8,6 +8,7 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/boxes/meetings.h"
+#include "core/cull/view_order.h"
 #include "core/native/canvas.h"
 #include "core/scene/scene.h"
 #include "experiments/method/plan.h"
@@ -59,9 +60,7 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
           .objects_alone = options.objects_alone,
           .full = options.full,
           .enough = thrifty ? kFewTriangles : 0,
-          .least_objects = !thrifty                                    ? 0
-                           : query_of(options) == QueryMode::occlusion ? kFewObjects
-                                                                       : kNoObjectLevel,
+          .object_level = !thrifty,
           .worth_a_view = thrifty ? kWorthAView : 0};
 }
 
@@ -236,6 +235,11 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   }
   work.settings = settings_of(options, work.regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
+  if (is_thrifty(options) && options.views.empty() && !work.regions.triangles.empty()) {
+    work.settings.views =
+        order_views(scene, work.regions, work.patches.cut ? work.patches.owner : owners(scene),
+                    std::move(work.settings.views));
+  }
   if (work.regions.triangles.empty()) {
     plan.trace.push_back(
         {.kind = StageKind::draw,

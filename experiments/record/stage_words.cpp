@@ -140,8 +140,8 @@ std::string reason_of(const Stage& stage) {
     case Reason::patches_whole:
       return "no object tested against itself has more than " + triangles(stage.m) +
              ": each is joined with itself by boxes alone";
-    case Reason::few_objects:
-      return objects(stage.n) + ", fewer than " + m + ": one seldom hides all of another";
+    case Reason::asked_singly:
+      return "every triangle is asked anyway";
     case Reason::rounds_given:
       return spelled("{rounds} " + n);
     case Reason::all_views:
@@ -157,7 +157,7 @@ std::string reason_of(const Stage& stage) {
       return "occlusion queries, more than " + triangles(stage.n);
     case Reason::clusters_small:
       return triangles(stage.n) + ", at most " + m;
-    case Reason::flags:
+    case Reason::clusters_flags:
       return "flags: a question costs nothing";
     case Reason::sweep:
       if (!stage.k) return "boxes of objects, then of their triangles";

@@ -25,7 +25,6 @@ CullSettings settings_of(const Fattener& fattener) {
           .resolution = 64,
           .fattener = fattener,
           .radius = {},
-          .least_objects = kFewObjects,
           .worth_a_view = kWorthAView};
 }
 
@@ -46,34 +45,23 @@ bool asked_objects(const std::vector<Stage>& stages) {
   return false;
 }
 
-TEST(CullRules, ObjectsAreAskedAsAWholeFromSixteenOn) {
+TEST(CullRules, TheObjectLevelCanBeLeftOut) {
   const Fattener fattener = obb_fattener();
-  for (const int objects : {2, 15, 16, 17}) {
-    SCOPED_TRACE(objects);
-    const Scene scene = stack(objects);
-    const Regions regions = find_regions(scene);
-    ASSERT_EQ(regions.triangles.size(), static_cast<std::size_t>(objects));
-    const CullSettings settings = settings_of(fattener);
+  const Scene scene = stack(2);
+  for (const bool left_out : {false, true}) {
+    SCOPED_TRACE(left_out);
+    CullSettings settings = settings_of(fattener);
+    settings.object_level = !left_out;
     const CullResult result = cull_of(scene, settings);
-    const std::vector<Stage> planned = planned_stages(scene, regions, settings);
+    const std::vector<Stage> planned = planned_stages(scene, find_regions(scene), settings);
     for (const auto* stages : {&result.stages, &planned}) {
-      const Stage* left_out = find_stage(*stages, StageKind::objects);
-      EXPECT_EQ(left_out != nullptr, objects < 16);
-      EXPECT_EQ(asked_objects(*stages), objects >= 16);
-      if (left_out == nullptr) continue;
-      EXPECT_FALSE(left_out->ran);
-      EXPECT_EQ(left_out->reason, Reason::few_objects);
-      EXPECT_EQ(left_out->n, static_cast<std::uint64_t>(objects));
-      EXPECT_EQ(left_out->m, 16u);
+      const Stage* stage = find_stage(*stages, StageKind::objects);
+      EXPECT_EQ(stage != nullptr, left_out);
+      EXPECT_EQ(asked_objects(*stages), !left_out);
+      if (stage != nullptr) {
+        EXPECT_EQ(stage->reason, Reason::asked_singly);
+      }
     }
-    CullSettings always = settings;
-    always.least_objects = 0;
-    EXPECT_TRUE(asked_objects(cull_of(scene, always).stages));
-    CullSettings never = settings;
-    never.least_objects = kNoObjectLevel;
-    const CullResult result_of_never = cull_of(scene, never);
-    EXPECT_FALSE(asked_objects(result_of_never.stages));
-    EXPECT_EQ(find_stage(result_of_never.stages, StageKind::objects)->reason, Reason::flags);
   }
 }
 

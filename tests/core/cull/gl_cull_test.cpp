@@ -14,14 +14,9 @@ Drawing on_gl(const Fattener& fattener, QueryMode query) {
                                                GlCanvasOptions{.query = query})};
 }
 
-const std::vector<Fattener>& fatteners() {
-  static const std::vector<Fattener> all = {raw_triangles(), obb_fattener(), minkowski_fattener(),
-                                            obb_surface_fattener()};
-  return all;
-}
-
 TEST(GlCull, BothKindsOfQueryGiveTheSameAnswers) {
-  for (const Fattener& fattener : fatteners()) {
+  for (const Fattener& fattener :
+       {raw_triangles(), obb_fattener(), minkowski_fattener(), obb_surface_fattener()}) {
     SCOPED_TRACE(fattener.name);
     const Drawing flags = on_gl(fattener, QueryMode::flags);
     const Drawing occlusion = on_gl(fattener, QueryMode::occlusion);

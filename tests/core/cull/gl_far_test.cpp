@@ -1,10 +1,8 @@
 // FAR from triangles to pairs on the real rasterizer, against the exact oracle over all pairs.
 #include <fmt/format.h>
 
-#include "core/boxes/join.h"
 #include "experiments/method/run.h"
 #include "experiments/record/stage_words.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/far.h"
 #include "tests/lab/gl.h"
 

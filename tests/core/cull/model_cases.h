@@ -22,7 +22,7 @@ struct Case {
   bool places = true;                   // false: no two boxes of objects overlap
   bool touching = true;                 // see CullSettings
   std::vector<std::uint32_t> clusters;  // sizes
-  int least_objects = 0;
+  bool object_level = true;
   std::vector<std::string> levels;  // names, of the coarse ones and of the triangles
 };
 
@@ -251,7 +251,7 @@ inline Outcome by_core(const Case& c, Fault fault = Fault::none) {
   settings.objects_alone = s.alone;
   settings.full = s.full;
   settings.enough = static_cast<std::uint32_t>(s.enough);
-  settings.least_objects = static_cast<std::uint32_t>(c.least_objects);
+  settings.object_level = c.object_level;
   settings.worth_a_view = static_cast<std::uint32_t>(s.worth);
   settings.bits = bits_of(c, c.start);
   Outcome out;
@@ -398,11 +398,9 @@ inline void add_levels(lab::Random& random, Owners kind, Case& c) {
   const bool marked =
       std::ranges::any_of(c.scene.objects, [](const Object& object) { return object.self; });
   const bool alone = kind == Owners::selves && marked;  // some triangle is its own owner
-  int taking_part = 0;
-  for (const Set owner : c.world.owners) taking_part += (owner & c.world.region) != 0;
-  c.least_objects = random.below(3) == 0 ? random.below(5) : 0;
+  c.object_level = random.below(3) > 0;
   s.alone = c.patches.empty() && !alone && random.below(8) == 0;
-  if (c.patches.empty() && !alone && (s.alone || taking_part >= c.least_objects)) {
+  if (c.patches.empty() && !alone && (s.alone || c.object_level)) {
     s.coarse.push_back(wholes(c.world.owners));
     c.levels.emplace_back("objects");
   }
@@ -460,7 +458,7 @@ inline Case case_of(const World& world, const Schedule& schedule, const Bits& st
   std::vector<int> place(last.first_triangle + last.triangle_count);
   std::iota(place.begin(), place.end(), 1);
   add_points(place, c.scene);
-  c.least_objects = kMost;
+  c.object_level = false;
   c.levels.emplace_back("triangles");
   return c;
 }
