@@ -4,6 +4,7 @@
 
 #include "core/base/text.h"
 #include "core/boxes/join.h"
+#include "core/cull/view_order.h"
 #include "core/native/canvas.h"
 #include "experiments/record/stage_words.h"
 #include "tests/lab/cull.h"
@@ -63,6 +64,49 @@ TEST(CullRules, TheObjectLevelCanBeLeftOut) {
       }
     }
   }
+}
+
+/// Adds an object: n x n small triangles in the square from `at` along `u` and `v`.
+void add_sheet(Vec3 at, const Vec3& u, const Vec3& v, int n,
+               std::vector<std::vector<std::array<Vec3, 3>>>& out) {
+  out.emplace_back();
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      const Vec3 p = at + u * i / n + v * k / n;
+      out.back().push_back({p, p + u * 0.01, p + v * 0.01});
+    }
+  }
+}
+
+std::string order_of(const std::vector<std::vector<std::array<Vec3, 3>>>& objects,
+                     const std::string& views) {
+  const Scene scene = lab::scene_of(objects);
+  Regions regions;
+  regions.places = {{Vec3::Zero(), Vec3::Constant(100)}};
+  regions.triangles.resize(scene.triangles.size());
+  std::iota(regions.triangles.begin(), regions.triangles.end(), 0u);
+  std::string out;
+  for (const View& view : order_views(scene, regions, owners(scene), parse_views(views)))
+    out += (out.empty() ? "" : ",") + view.name;
+  return out;
+}
+
+// Along z, one of two sheets hides the other. Along x and y, each is seen from its edge.
+TEST(ViewOrder, BeginsWithTheViewInWhichLeastIsHidden) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects;
+  for (const double z : {0, 60}) add_sheet({0, 0, z}, {40, 0, 0}, {0, 40, 0}, 20, objects);
+  EXPECT_EQ(order_of(objects, "z,x,y"), "x,z,y");  // equal views stay in their order
+  EXPECT_EQ(order_of(objects, "z,y,-x"), "y,z,-x");
+  EXPECT_EQ(order_of(objects, "z"), "z");
+  EXPECT_EQ(order_of({}, "z,x"), "z,x");
+}
+
+// The sheet in the middle of three, whose object is the last, is hidden in x and in -x.
+TEST(ViewOrder, GoesOnWithTheViewThatCullsMostOfTheRest) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects;
+  for (const double z : {0, 60}) add_sheet({0, 0, z}, {40, 0, 0}, {0, 40, 0}, 20, objects);
+  for (const double x : {0, 80, 40}) add_sheet({x, 60, 0}, {0, 40, 0}, {0, 0, 40}, 10, objects);
+  EXPECT_EQ(order_of(objects, "x,-x,z"), "x,z,-x");
 }
 
 // Whatever is left out, what intersects stays, and what a run without rules culls is a superset.
