@@ -5,8 +5,7 @@
 #    prints a table. Exact predicates check every pair that a method culled.
 # 3. Draws a picture of what CULLIDE misses and FAR finds, measures the small grids of all studies,
 #    and makes the report.
-# Exit status: that of the comparison, else that of the first step after it that failed; 2 if the
-# comparison did not start.
+# Exit status: that of the comparison, else that of the first step after it that failed; 2 if the comparison did not start.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh

@@ -149,9 +149,8 @@ broken_table() {
       FROM json_each(readfile('$out/$driver/doctor.json'), '\$.probes') p WHERE NOT p.value ->> 'pass'"
   done
 }
-# For each of the two radii, the table has the colliding pairs that FAR missed, and the points that break the
-# lemmas. Rows of the native canvas and of device models are left out, since they are the same for all
-# drivers.
+# For each of the two radii, the table has the colliding pairs that FAR missed, and the points that break the lemmas. Rows of the
+# native canvas and of device models are left out, since they are the same for all drivers.
 drawn="device NOT IN ('cpu', 'native')"
 missed_table() {
   local driver store

@@ -1,17 +1,15 @@
 #!/usr/bin/env bash
-# Measures all that farcull can on this machine's GPU, in one command and within two hours: the probes, missed
-# pairs, times beside other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of
-# reliability, all studies and their report. The most important parts come first. It installs what is missing
-# and builds.
+# Measures all that farcull can on this machine's GPU, in one command and within two hours: the probes, missed pairs, times beside
+# other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of reliability, all studies and their
+# report. The most important parts come first. It installs what is missing and builds.
 #   bash experiments/hardware.sh
 #     --minutes N      how long measuring may take (default 120); parts left out or cut off are named
 #     --device DEVICE  default hardware; software (Mesa's) or native for a trial
 #     --out DIR        default build/hardware-COMMIT-DEVICE
-# Call it again to go on after Ctrl-C, a kill or a budget that was spent: it does not measure a part again that
-# is done, and studies go on point by point. It makes one archive, DIR.tar.gz, and a page, DIR/NAME.md, where
-# NAME is the name of the device. For hardware it also puts the page in docs/results/. It stops when DIR has 20
-# GiB. Exit status: 0; 1 a pair was missed or a check failed; 2 it could not begin;
-# 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
+# Call it again to go on after Ctrl-C, a kill or a budget that was spent: it does not measure a part again that is done, and
+# studies go on point by point. It makes one archive, DIR.tar.gz, and a page, DIR/NAME.md, where NAME is the name of the device.
+# For hardware it also puts the page in docs/results/. It stops when DIR has 20 GiB. Exit status: 0; 1 a pair was missed or a
+# check failed; 2 it could not begin; 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -68,9 +66,8 @@ say() { printf 'hardware: %s\n' "$*"; }
 
 left() { echo $((budget - (SECONDS - began))); } # seconds
 
-# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call ran it. The command may take
-# 1/SHARE of the time that is left, but at least 10 minutes. steps/NAME gets the status and the seconds;
-# logs/NAME.txt the output.
+# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call ran it. The command may take 1/SHARE of the time that
+# is left, but at least 10 minutes. steps/NAME gets the status and the seconds; logs/NAME.txt the output.
 step() {
   local name=$1 text=$3 used
   local -i share=$2 limit start status=0

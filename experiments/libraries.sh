@@ -9,9 +9,8 @@
 #   bash experiments/libraries.sh [DIR]           as --keep, with the full suite. It takes an hour
 #                                                 and a half. A second run continues the first one
 # With --quick and --keep, the large libraries VTK and Open3D are not installed.
-# DIR is the folder for the store and the report (default: build/libraries-COMMIT, then -quick or
-# -keep). The exit status is that of the study: 1 if a farcull method with a guarantee missed a pair
-# or gave no answer.
+# DIR is the folder for the store and the report (default: build/libraries-COMMIT, then -quick or -keep). The exit status is that
+# of the study: 1 if a farcull method with a guarantee missed a pair or gave no answer.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded
-# and unpacked, since installing it needs root. Small systems would also not install the meshes,
-# which are documentation.
+# Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded and unpacked, since installing
+# it needs root. Small systems would also not install the meshes, which are documentation.
 # Exit status: 0: all meshes are there. 3: the meshes cannot be obtained, and stderr says why.
 # Other values: an error of the disk or of this script.
 set -euo pipefail

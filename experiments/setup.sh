@@ -61,9 +61,8 @@ farcull_as_root() {
   if ((EUID == 0)); then "${command[@]}"; else sudo "${command[@]}"; fi
 }
 
-# farcull_install PACKAGES...: tries once to install. `update` may fail because of a source that is not
-# needed, so only the status of `install` counts. apt-get waits while another apt holds the lock, since a
-# new machine upgrades itself in the background.
+# farcull_install PACKAGES...: tries once to install. `update` may fail because of a source that is not needed, so only the status
+# of `install` counts. apt-get waits while another apt holds the lock, since a new machine upgrades itself in the background.
 farcull_install() {
   local -a apt_get=(farcull_as_root apt-get -o DPkg::Lock::Timeout=300)
   "${apt_get[@]}" update || echo "apt-get update failed; trying with the lists that are there"
@@ -92,8 +91,7 @@ farcull_setup() {
   mkdir -p "$farcull_root/build" || return 2
   echo "setup: installing ${#missing[@]} packages: ${missing[*]}"
   if ! farcull_install "${missing[@]}" >"$log" 2>&1; then
-    # The network gets a pause, and dpkg completes an installation that was killed earlier. Then the second
-    # attempt follows.
+    # The network gets a pause, and dpkg completes an installation that was killed earlier. Then the second attempt follows.
     sleep 5
     farcull_as_root dpkg --configure -a >>"$log" 2>&1 || true
     if ! farcull_install "${missing[@]}" >>"$log" 2>&1; then
@@ -106,9 +104,8 @@ farcull_setup() {
   fi
 }
 
-# Prints how many compilers may run at once: one for each core, but at most one for each 2 GiB of
-# memory, since a file that includes CGAL takes 2 GiB. CMake's variable CMAKE_BUILD_PARALLEL_LEVEL
-# overrides this number.
+# Prints how many compilers may run at once: one for each core, but at most one for each 2 GiB of memory, since a file that
+# includes CGAL takes 2 GiB. CMake's variable CMAKE_BUILD_PARALLEL_LEVEL overrides this number.
 farcull_jobs() {
   if [[ -n ${CMAKE_BUILD_PARALLEL_LEVEL:-} ]]; then
     printf '%s\n' "$CMAKE_BUILD_PARALLEL_LEVEL"
@@ -119,8 +116,7 @@ farcull_jobs() {
   jobs=$cores
   if [[ -r /proc/meminfo ]]; then
     bytes=$(awk '/^MemAvailable:/ { printf "%.0f", $2 * 1024 }' /proc/meminfo)
-    # In a container, meminfo describes the host. The container's limit is in the files of control groups,
-    # version 2 or 1.
+    # In a container, meminfo describes the host. The container's limit is in the files of control groups, version 2 or 1.
     for file in /sys/fs/cgroup/memory.max /sys/fs/cgroup/memory/memory.limit_in_bytes; do
       limit=$(cat "$file" 2>/dev/null) || continue
       if [[ $limit =~ ^[0-9]+$ ]] && ((limit < bytes)); then bytes=$limit; fi
@@ -130,8 +126,7 @@ farcull_jobs() {
   printf '%s\n' $((jobs > 1 ? jobs : 1))
 }
 
-# Configures build/ as Release with the tests, unless build/ is configured so. CMake itself notices a
-# CMakeLists.txt that changed.
+# Configures build/ as Release with the tests, unless build/ is configured so. CMake itself notices a CMakeLists.txt that changed.
 farcull_configure() {
   local build=$farcull_root/build
   local -a how=()
@@ -141,8 +136,7 @@ farcull_configure() {
       return 0
     fi
   else
-    # An unfinished configuration may have stored settings that do not work, such as a generator whose
-    # tool is missing.
+    # An unfinished configuration may have stored settings that do not work, such as a generator whose tool is missing.
     rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
     if command -v ninja >/dev/null; then how=(-G Ninja); fi
   fi
@@ -217,8 +211,7 @@ farcull_build() {
   fi
 }
 
-# farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in another build
-# folder.
+# farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in another build folder.
 farcull_build_beside() {
   local folder=$1 started=$SECONDS said
   local build=$farcull_root/$1
@@ -233,9 +226,8 @@ farcull_build_beside() {
   echo "build: ${targets[*]} done in $((SECONDS - started)) s ($folder/)"
 }
 
-# farcull_keep_report NAME TITLE REPORT [CALL]: copies the page of a report to docs/results/NAME.md, with the
-# figures, pictures and tables that it shows or links. Then removes figures, pictures and tables that no
-# page in docs/results shows or links.
+# farcull_keep_report NAME TITLE REPORT [CALL]: copies the page of a report to docs/results/NAME.md, with the figures, pictures
+# and tables that it shows or links. Then removes figures, pictures and tables that no page in docs/results shows or links.
 farcull_keep_report() {
   local results=$farcull_root/docs/results file
   mkdir -p "$results"/{figures,pictures,tables}

@@ -31,7 +31,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (!fattens(options.method)) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset == "obb") return {obb_fattener()};
-  // Add a new offset here.
+  // A new offset goes here.
   // Without a guarantee, culling by oriented boxes first would add one more way to miss pairs.
   if (!is_thrifty(options)) return {minkowski_fattener()};
   return {obb_fattener(), minkowski_fattener()};

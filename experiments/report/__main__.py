@@ -17,8 +17,7 @@ import subprocess
 import sys
 
 # A row with a promise breaks the promise if one of these counts is above 0. Some counts are about missing answers.
-BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
-          "no_memory")
+BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung", "no_memory")
 FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # first and last chapters; the program orders the rest
 
 
@@ -94,8 +93,7 @@ class Unfinished:
                 self.place.rename(self.old)
             self.path.rename(self.place)
         except OSError as error:
-            raise Refusal(self.place, f"cannot be put in place: {error.strerror}",
-                          "see who may write to the folder") from error
+            raise Refusal(self.place, f"cannot be put in place: {error.strerror}", "see who may write to the folder") from error
 
     def __exit__(self, *_):
         if self.old.exists() and not self.place.exists():  # a process was killed between the two steps of publish()
@@ -109,9 +107,8 @@ class Unfinished:
 class Reporter:
     def __init__(self, arguments, context, store):
         self.arguments, self.context, self.store = arguments, context, store
-        self.broken, self.notes, self.counts = [], [], dict.fromkeys(("figure", "table", "picture"), 0)
-        self.others, notes = other_devices(arguments.folder, store)
-        self.notes += notes
+        self.broken, self.counts = [], dict.fromkeys(("figure", "table", "picture"), 0)
+        self.others, self.notes = other_devices(arguments.folder, store)
         now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
         self.page = pages.Page(arguments.folder, context["commit"], now, store.runs)
         self.terminal = sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb"
@@ -122,15 +119,12 @@ class Reporter:
 
     def fill(self, study):
         """Makes the chapter of a study, with its broken promises first."""
-        names = [known["name"] for known in self.context["studies"]]
-        if study.name not in names:
-            raise Refusal("report", f"'{study.name}' is no study that this program reports",
-                          "use the farcull that measured it")
-        known = self.context["studies"][names.index(study.name)]
+        known = next((known for known in self.context["studies"] if known["name"] == study.name), None)
+        if known is None:
+            raise Refusal("report", f"'{study.name}' is no study that this program reports", "use the farcull that measured it")
         chapter = Chapter(study.name, known["title"], known["question"], command_of(study, self.store.runs))
         frame.fill(chapter, study)
-        others = [(other.device, other.study(study.name, study.constants))
-                  for other in self.others if study.name in other.names]
+        others = [(other.device, other.study(study.name, study.constants)) for other in self.others if study.name in other.names]
         devices.fill(chapter, study, self.store.device, others)
         chapter.findings.sort(key=lambda finding: not finding[0])
         before = len(self.broken)
@@ -191,8 +185,8 @@ class Reporter:
         return lines if done.returncode == 1 else []
 
     def tell(self):
-        counts = [counted(len(self.page.chapters), "study", "studies")]
-        counts += [counted(n, one, one + "s") for one, n in self.counts.items()]
+        counts = [counted(len(self.page.chapters), "study", "studies"),
+                  *(counted(n, one, one + "s") for one, n in self.counts.items())]
         print("".join(note + "\n" for note in self.notes) + ", ".join(counts) +
               f"\n{self.arguments.folder}/report/index.html", flush=True)
         for broken in self.broken:
@@ -239,7 +233,6 @@ def main():
     def interrupt(number, _):
         raise Interrupted(number)
 
-
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("context")
@@ -258,8 +251,7 @@ def main():
     except Refusal as error:
         print(f"farcull: {error}", file=sys.stderr)
     except Damaged as error:
-        print(f"farcull: {sys.argv[1]}/results.sqlite: is damaged: {error}; use the farcull that measured it",
-              file=sys.stderr)
+        print(f"farcull: {sys.argv[1]}/results.sqlite: is damaged: {error}; use the farcull that measured it", file=sys.stderr)
     except OSError as error:
         print(f"farcull: {error.filename or 'the report'}: cannot be written: {error.strerror}; make room on the disk",
               file=sys.stderr)

@@ -78,12 +78,10 @@ def looks_of(figure):
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
     for name in names_of(figure):
         words = " " + re.sub(r"[^a-z0-9]+", " ", name.split(" = ")[0].lower()) + " "
-        known = next((k for k in KNOWN if f" {k[0]} " in words), None)
-        if known:
+        if known := next((k for k in KNOWN if f" {k[0]} " in words), None):
             n = times[known] = times.get(known, -1) + 1
             at = MARKERS.index(known[3]) if known[3] in MARKERS and n else 0
-            look = Look(known[1], DASHES[(known[2] + n) % len(DASHES)],
-                        MARKERS[(at + n) % len(MARKERS)] if n else known[3])
+            look = Look(known[1], DASHES[(known[2] + n) % len(DASHES)], MARKERS[(at + n) % len(MARKERS)] if n else known[3])
         else:
             look = Look(*(of[(unknown + skip) % len(of)] for of, skip in (
                 (FREE, 0), (DASHES, unknown // len(FREE)), (MARKERS, unknown // len(MARKERS)))))
@@ -193,10 +191,8 @@ def scale_axis(ax, side, spec, values, room):
 
 def values_along(panel, side):
     out = [m.at for m in panel.marks if m.vertical == (side == "x")]
-    for s in panel.series + (panel.strip if side == "x" else []):
-        for name in (side, side + "_low", side + "_high"):
-            out += list(getattr(s, name))
-    return out
+    return out + [at for s in panel.series + (panel.strip if side == "x" else [])
+                  for name in (side, side + "_low", side + "_high") for at in getattr(s, name)]
 
 
 # ---- drawing
@@ -250,8 +246,7 @@ class Drawer:
             # If the panel below or on the left has the same label, only that panel shows the label.
             below, left = (panels[i] if 0 <= i < len(panels) else None for i in (at + columns, at - 1))
             self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strips[row], (
-                below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label),
-                column == 0)
+                below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label), column == 0)
         if self.key:
             self.canvas.legend(handles=self.key, loc="lower center", ncol=key_columns, frameon=False, handlelength=2.5,
                                columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
@@ -358,8 +353,7 @@ class Drawer:
                 for pair in ((low, along), (along, high))]
         if any(e == e for e in ends[0]):
             at = (along, across) if side == "x" else (across, along)
-            ax.errorbar(*at, **{side + "err": ends}, fmt="none", ecolor=look.colour, elinewidth=0.8, capsize=1.5,
-                        capthick=0.8)
+            ax.errorbar(*at, **{side + "err": ends}, fmt="none", ecolor=look.colour, elinewidth=0.8, capsize=1.5, capthick=0.8)
 
     def series(self, ax, panel, s):
         """Draws a series. Returns False if no point can be drawn."""
@@ -373,8 +367,7 @@ class Drawer:
             self.bars(ax, look, x, y, clean(s.x_low, logs[0]), clean(s.x_high, logs[0]), "x")
         if s.y_low:
             self.bars(ax, look, y, x, clean(s.y_low, logs[1]), clean(s.y_high, logs[1]), "y")
-        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None,
-                **look.of(s.style))
+        ax.plot(x, y, in_layout=False, clip_on=panel.x.low is not None or panel.x.high is not None, **look.of(s.style))
         return True
 
     def strip(self, above, panel, cell, rows, labelled):

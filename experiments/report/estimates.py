@@ -185,8 +185,7 @@ def rate_text(hits, of):
     rate = rate_of(int(hits), int(of))
     if hits == 0:
         return f"{of_all(hits, of)} (95 % bound: at most {rounded(rate.high, 2)})"
-    return (f"{of_all(hits, of)} ({rounded(rate.value, 2)}, 95 % interval {rounded(rate.low, 2)} "
-            f"to {rounded(rate.high, 2)})")
+    return (f"{of_all(hits, of)} ({rounded(rate.value, 2)}, 95 % interval {rounded(rate.low, 2)} to {rounded(rate.high, 2)})")
 
 
 def spread(values, unit=""):

@@ -338,30 +338,26 @@ def sample_text(rows):
 def series_of(name, rows, x, y, **look):
     """Returns a Series with a point for each row. x and y: functions of a row, or names of columns."""
     along = [(lambda row, n=f: value(row, n)) if isinstance(f, str) else f for f in (x, y)]
-    out = Series(name, **look)
-    for row in rows.itertuples():
-        out.x.append(along[0](row))
-        out.y.append(along[1](row))
-    return out
+    return Series(name, *([of(row) for row in rows.itertuples()] for of in along), **look)
+
+
+def line_of(name, values, style="lines_points", **look):
+    """Returns a Series of a pandas Series, whose index is x."""
+    return Series(name, list(values.index), list(values), style, **look)
 
 
 def times_of(name, rows, x, **look):
     """Returns series_of() with y as the time from triangles to pairs, in ms, with the interval of each time."""
     none = Estimate(NONE, NONE, NONE, 0)
-    out = series_of(name, rows, x, lambda row: (estimate(row) or none).value, **look)
-    for row in rows.itertuples():
-        e = estimate(row) or none
-        out.y_low.append(e.low if e.n > 1 else NONE)
-        out.y_high.append(e.high if e.n > 1 else NONE)
-    return out
+    times = [estimate(row) or none for row in rows.itertuples()]
+    low, high = ([getattr(time, end) if time.n > 1 else NONE for time in times] for end in ("low", "high"))
+    return series_of(name, rows, x, lambda row: (estimate(row) or none).value, y_low=low, y_high=high, **look)
 
 
 def columns(texts, numbers, more_texts=(), more_numbers=()):
     """Returns columns for a Table, in this order: texts, numbers, more_texts, more_numbers."""
-    out = []
-    for names, side in ((texts, "l"), (numbers, "r"), (more_texts, "l"), (more_numbers, "r")):
-        out += [(name, side) for name in names]
-    return out
+    sides = ((texts, "l"), (numbers, "r"), (more_texts, "l"), (more_numbers, "r"))
+    return [(name, side) for names, side in sides for name in names]
 
 
 def count_cell(row, name):
@@ -478,8 +474,7 @@ def at_risk(rows, row):
     bare = [column(own[own.radius.isin(["", "budget"])], "at_risk_bare"), column(own[own.radius == "0"], "missed"),
             column(here[here.method == "cullide"], "missed")]
     smaller = [column(own[own.radius.isin(["", "budget"])], "at_risk"), column(own[own.radius == "0.9"], "missed")]
-    return tuple(next((value for values in known for value in values if value == value), NONE)
-                 for known in (smaller, bare))
+    return tuple(next((value for values in known for value in values if value == value), NONE) for known in (smaller, bare))
 
 
 def risk_text(rows, pairs):
@@ -489,8 +484,7 @@ def risk_text(rows, pairs):
     words = []
     for values, radius in zip(zip(*(at_risk(rows, row) for row in pairs.itertuples())), (
             "with 0.9 of the radius", "without a ball")):
-        known = [value for value in values if value == value]
-        if known:
+        if known := [value for value in values if value == value]:
             part = "" if len(known) == len(values) else f" (counted in {of_all(len(known), len(values))} runs)"
             words.append((sum(known), f"{counted(sum(known), 'pair', 'pairs')} {radius}{part}"))
     if not words:
@@ -551,11 +545,9 @@ def add_gaps(chapter, study):
             f"{counted(void, 'round', 'rounds')} of {of_all((rows.void > 0).sum(), (rows.rounds.map(len) > 0).sum())} "
             "timed points are void and left out, since other programs took the processors meanwhile.")
     if untimed := rows.untimed.sum():
-        chapter.limits.append(f"{counted(untimed, 'point', 'points')} have no times: they were measured with "
-                              "`--no-times`.")
+        chapter.limits.append(f"{counted(untimed, 'point', 'points')} have no times: they were measured with `--no-times`.")
     if not study.complete:
-        chapter.limits.append(f"Not finished: {of_all(study.all_rows.whole.sum(), len(study.points))} points are "
-                              "measured.")
+        chapter.limits.append(f"Not finished: {of_all(study.all_rows.whole.sum(), len(study.points))} points are measured.")
 
 
 def command_of(study, runs):

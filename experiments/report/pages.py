@@ -254,13 +254,11 @@ def table_latex(table):
 
     out, caption = "% \\usepackage{booktabs,graphicx}\n", latex_text(table.caption)
     for begin in range(0, max(len(table.rows), 1), ROWS_OF_FLOAT):
-        title = f"{caption}.}}\n  \\label{{tab:{table.name}}}" if begin == 0 \
-            else f"{caption}, continued.}}"
+        title = f"{caption}.}}\n  \\label{{tab:{table.name}}}" if begin == 0 else f"{caption}, continued.}}"
         out += ("\\begin{table}\n  \\centering\n  \\caption{" + title +
                 "\n  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
                 "  \\begin{tabular}{" + "".join(side for _, side in table.columns) +
-                "}\n    \\toprule\n" + line(name for name, _ in table.columns) +
-                "    \\midrule\n" +
+                "}\n    \\toprule\n" + line(name for name, _ in table.columns) + "    \\midrule\n" +
                 "".join(line(row) for row in table.rows[begin:begin + ROWS_OF_FLOAT]) +
                 "    \\bottomrule\n  \\end{tabular}}\n\\end{table}\n")
     return out

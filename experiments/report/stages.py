@@ -19,9 +19,8 @@ import draw as look  # noqa: E402, F401: importing it sets the look of figures
 from matplotlib import pyplot  # noqa: E402
 
 ROUNDS, SIDE = 5, 256  # runs of each form; side of a view in px
-SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres "
-          "two-spheres two-tori torii cylinders crowd needles needles-crossed needles-layers stack "
-          "mannequin-devil+self cad-cut").split()
+SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dragon tree-leaves field:100000 spheres two-spheres "
+          "two-tori torii cylinders crowd needles needles-crossed needles-layers stack mannequin-devil+self cad-cut").split()
 DEFAULT = "boxes"
 FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then methods
 # Scenes whose exact tests take longer than drawing. Other directions of views are tried on these scenes.
@@ -119,8 +118,7 @@ def table(results):
     for scene, forms in results.items():
         for form in FORMS[:-1]:
             one = forms[form]
-            left = list(one["left"].items())
-            views = [f"{out:,}" for name, out in left if name != "boxes"][:2]
+            views = [f"{out:,}" for name, out in one["left"].items() if name != "boxes"][:2]
             boxes = f"{one['left']['boxes']:,}" if "boxes" in one["left"] else "-"
             shares = " | ".join(f"{one['share'][part]:.2f}" for part in PARTS)
             total = sorted(one["total"])
@@ -174,13 +172,12 @@ def main():
     results = measure(program, scenes or SCENES)
     draw(results, picture)
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    load = os.getloadavg()[0]
     lines = [
         "# What each stage of FAR takes away and costs", "",
         "Made again by `bash experiments/results.sh stages`, which writes this page.", "",
         f"- **Device:** {os.cpu_count()} cores, no GPU; the native canvas at {SIDE} px, offset `obb` and what follows it.",
         f"- **Commit:** {version}, {datetime.date.today()}.",
-        f"- **Load:** {load:.1f} at the end; medians of {ROUNDS} runs in turn, each in a process of its own.", "",
+        f"- **Load:** {os.getloadavg()[0]:.1f} at the end; medians of {ROUNDS} runs in turn, each in a process of its own.", "",
         slower(results), "",
         "Times are shares of the time of `exact` (boxes and exact tests) on the same scene. *Boxes*: comparing boxes of "
         "objects, blocks and triangles. *Views*: fattening, drawing, asking. *Pairs*: the join of what is left, or taking "

@@ -41,8 +41,7 @@ class Store:
         rows = self.read("SELECT position, run, measured, device, counts, times, left_out, points.* FROM rows JOIN "
                          "points USING (study, position) WHERE study = ? ORDER BY position", name)
         rows = rows.loc[:, ~rows.columns.duplicated()].drop(columns="study")
-        counts = [json.loads(text) for text in rows.counts]
-        times = [json.loads(text) for text in rows.times]
+        counts, times = ([json.loads(text) for text in texts] for texts in (rows.counts, rows.times))
         rows["counts"], rows["times"] = counts, times
         # A void round (other programs took the processors) becomes an empty tuple, so that later rounds keep their places.
         rounds = [t.get("rounds", []) for t in times]
@@ -52,8 +51,7 @@ class Store:
         rows["untimed"] = [t.get("no_times", False) for t in times]
         rows["whole"] = ["rounds" not in t or len(t["rounds"]) >= ROUNDS or t.get("no_times", False) for t in times]
         values = [{**{n + "_count" if n in AXES else n: v for n, v in c.items()},
-                   **{n + "_ms": v for n, v in t.items() if n not in ("rounds", "no_times")}}
-                  for c, t in zip(counts, times)]
+                   **{n + "_ms": v for n, v in t.items() if n not in ("rounds", "no_times")}} for c, t in zip(counts, times)]
         rows = pd.concat([rows, pd.DataFrame(values, rows.index)], axis=1)
         rows["contestant"] = [contestant(row) for row in rows.itertuples()]
         return Study(name, bool(declared.quick), int(declared.seed), points, rows, constants, self.folder)

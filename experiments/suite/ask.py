@@ -350,10 +350,8 @@ def interval(t, n, origin, along):
         return None
     at = [dot(along, p) for p in t]
     cuts = [at[i] for i in range(3) if side[i] == 0]
-    for i in range(3):
-        k = (i + 1) % 3
-        if side[i] * side[k] < 0:
-            cuts.append(Fraction(at[k] * side[i] - at[i] * side[k], side[i] - side[k]))
+    cuts += [Fraction(at[k] * side[i] - at[i] * side[k], side[i] - side[k])
+             for i, k in ((0, 1), (1, 2), (2, 0)) if side[i] * side[k] < 0]
     return min(cuts), max(cuts)
 
 
@@ -383,11 +381,8 @@ class Suite:
 
     def __init__(self, folder):
         self.folder = os.path.abspath(folder)
-        self.files, lines = {}, self.read('suite.txt').split('\n')
-        for line in lines:
-            words = line.split(' ')
-            if words[0] == 'file':
-                self.files[words[1]] = words[3]
+        lines = self.read('suite.txt').split('\n')
+        self.files = {words[1]: words[3] for words in (line.split(' ') for line in lines) if words[0] == 'file'}
         self.sum = lines[-2][4:]
         if hashlib.sha256('\n'.join([*lines[:-2], '']).encode()).hexdigest() != self.sum:
             raise Wrong(f'{folder}/suite.txt: the sum is not that of the lines before it')

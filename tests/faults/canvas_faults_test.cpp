@@ -2,7 +2,6 @@
 // as without the fault, or there is an error; and the next use of the same canvas is right.
 #include <regex>
 
-#include "core/gl/canvas/canvas.h"
 #include "offsets/offsets.h"
 #include "tests/faults/gl_calls.h"
 #include "tests/lab/gl.h"

@@ -2,9 +2,6 @@
 // threads.
 #include <epoxy/egl.h>
 
-#include <epoxy/gl.h>
-
-#include "core/gl/canvas/canvas.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/faults/gl_calls.h"

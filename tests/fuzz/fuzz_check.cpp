@@ -1,5 +1,4 @@
 // The reader and the checker of certificates, against a scene whose truth verify/exact knows.
-#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>

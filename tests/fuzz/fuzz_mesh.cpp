@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
 #include "tests/fuzz/target.h"

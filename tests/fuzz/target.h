@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <new>
 #include <optional>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"

@@ -2,7 +2,6 @@
 // or a view.
 #pragma once
 
-#include "core/canvas/canvas.h"
 #include "core/canvas/fatten.h"
 #include "core/view/budget.h"
 #include "tests/lab/test.h"

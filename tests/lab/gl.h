@@ -1,7 +1,6 @@
 // The laboratory with a GL context.
 #pragma once
 
-#include "core/gl/base/context.h"
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/canvas/canvas.h"
 #include "tests/lab/canvas.h"

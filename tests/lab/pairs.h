@@ -1,7 +1,6 @@
 // The tests of boxes share this: the truth by exact tests of all pairs.
 #pragma once
 
-#include "core/boxes/block.h"
 #include "core/boxes/search.h"
 #include "tests/lab/scenes.h"
 #include "verify/exact.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gmpxx.h>
-#include "core/scene/scene.h"
 #include "tests/lab/standard.h"
 
 namespace farcull::reference {

@@ -1,7 +1,6 @@
 // Small scenes that aim at trouble, for end-to-end tests on any canvas.
 #pragma once
 
-#include "core/scene/scene.h"
 #include "tests/lab/canvas.h"
 
 namespace farcull::lab {

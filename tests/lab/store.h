@@ -3,8 +3,6 @@
 #pragma once
 
 #include <unistd.h>
-#include <nlohmann/json.hpp>
-#include "experiments/studies/point.h"
 #include "experiments/studies/run_studies.h"
 #include "tests/lab/test.h"
 

@@ -144,9 +144,7 @@ TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
   Random random(test_seed(508));
   int hits = 0;
   for (int n = 0; more_cases(n, trials(100'000), hits > 1000); ++n) {
-    Solid solid;
-    float cx, cy;
-    adversarial(random, solid, cx, cy);
+    const auto [cx, cy, solid] = adversarial(random);
     const auto outer = outer_interval(cx, cy, solid);
     const auto truth = exact_interval(cx, cy, solid);
     if (!truth) continue;
@@ -161,9 +159,7 @@ void expect_holds_adversarial(Kernel kernel, int cases) {
   Random random(test_seed(503));
   Tally tally;
   for (int n = 0; more_cases(n, cases, tally.hits > 1000 && tally.misses > 1000); ++n) {
-    Solid solid;
-    float cx, cy;
-    adversarial(random, solid, cx, cy);
+    const auto [cx, cy, solid] = adversarial(random);
     count(kernel, cx, cy, solid, tally);
     if (tally.violations != 0) {
       for (const auto& row : solid) std::printf("%a %a %a %a\n", row[0], row[1], row[2], row[3]);
@@ -186,9 +182,7 @@ TEST(ObbKernel, WithoutWideningAdversarialFloatsAreMissed) {
   Random random(test_seed(503));
   Tally tally;
   for (int n = 0; more_cases(n, 0, tally.violations > 100, 200'000); ++n) {
-    Solid solid;
-    float cx, cy;
-    adversarial(random, solid, cx, cy);
+    const auto [cx, cy, solid] = adversarial(random);
     count(without_widening, cx, cy, solid, tally);
   }
   std::cout << tally.violations << " of " << tally.hits << " lines violated\n";

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/proofs/bounds.h"
 #include "tests/proofs/gappa.h"
 #include "tests/proofs/table.h"
 

@@ -1,7 +1,5 @@
 // The way of a point from the world to the window: the map, clipping, and the budget's terms. M is
 // half the viewport's side (px).
-#include <cmath>
-
 #include "core/canvas/canvas.h"
 #include "core/view/budget.h"
 #include "tests/proofs/bounds.h"

@@ -1,5 +1,4 @@
 // Clearance: squared distances against the square of the clearance, exactly.
-#include "tests/lab/drawn_pairs.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
 #include "verify/exact.h"

@@ -1,7 +1,6 @@
 // The accounting of distances: its bounds against rational numbers, and wrong answers that it has
 // to find.
 #include "verify/distance_accounting.h"
-#include "tests/lab/drawn_pairs.h"
 
 #include "tests/lab/distances.h"
 #include "tests/lab/hard_pairs.h"
@@ -241,11 +240,6 @@ TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
   EXPECT_GT(behind, 10u);
 }
 
-Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                      const std::array<Vec3, 3>& other) {
-  return reference::scene_of({{a}, {b, other}});
-}
-
 // Slivers, points, huge and tiny ones: a triangle, one that is all but as near, and one that ties.
 TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   std::uint64_t nearer = 0, farther = 0, ties = 0;
@@ -257,7 +251,7 @@ TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
       double& x = other[draws.below(3u)][draws.below(3u)];
       x = std::nextafter(x, draws.coin() ? 1e300 : -1e300);
     }
-    const Scene scene = three_triangles(pair.a, pair.b, other);
+    const Scene scene = reference::scene_of({{pair.a}, {pair.b, other}});
     const ClaimedDistance claim = claim_of(scene, 0, 1, {0, 1});
     const Q beside = distance_lab::squared_distance(pair.a, other);
     const int order = cmp(beside, Q(claim.squared));

@@ -5,11 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/parts.h"
-#include "tests/lab/test.h"
 #include "verify/certificate/integer_distance.h"
 
 namespace farcull {

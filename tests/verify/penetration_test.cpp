@@ -9,8 +9,6 @@
 #include <Eigen/Geometry>
 
 #include "tests/lab/parts.h"
-#include "verify/convex_core.h"
-#include "verify/inside.h"
 
 namespace farcull {
 namespace {

@@ -52,9 +52,8 @@ try:
     from . import _farcull
 except ImportError as error:  # pip cannot install libraries of the system
     raise ImportError(
-        f"{error}. farcull needs libraries of the system (Debian: fonts-dejavu-core libcairo2 "
-        "libepoxy0 libfmt9 libglib2.0-0 libgmp10 libharfbuzz0b libhwy1 libpango-1.0-0 libpangocairo-1.0-0 libsqlite3-0 "
-        "zlib1g)"
+        f"{error}. farcull needs libraries of the system (Debian: fonts-dejavu-core libcairo2 libepoxy0 libfmt9 libglib2.0-0 "
+        "libgmp10 libharfbuzz0b libhwy1 libpango-1.0-0 libpangocairo-1.0-0 libsqlite3-0 zlib1g)"
     ) from error
 
 _farcull.require_main_interpreter()  # before numpy is imported: numpy needs the main interpreter as well

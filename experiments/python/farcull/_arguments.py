@@ -276,8 +276,7 @@ def selves(given: Any) -> Tuple[bool, List[bool]]:
     try:
         each = list(given)
     except TypeError:
-        remedy = "give True, False, or one for each object"
-        raise InputError("self", f"{given!r} is no truth value", remedy) from None
+        raise InputError("self", f"{given!r} is no truth value", "give True, False, or one for each object") from None
     return False, [flag("self", value) for value in each]
 
 
@@ -291,11 +290,8 @@ def ignored(given: Any, scene: Any = None) -> List[List[int]]:
     if rows.size == 0:
         return []
     if scene is not None and rows.dtype.kind == "U" and rows.ndim == 2 and rows.shape[1] == 2:
-        return [
-            pair
-            for k, (a, b) in enumerate(rows.tolist())
-            for pair in scene.pairs_named(encoded("ignore", a), encoded("ignore", b), f"row {k}")
-        ]
+        return [pair for k, (a, b) in enumerate(rows.tolist())
+                for pair in scene.pairs_named(encoded("ignore", a), encoded("ignore", b), f"row {k}")]
     if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iu":
         raise InputError("ignore", "are no rows of two whole numbers", remedy)
     out = rows.tolist()

@@ -75,15 +75,13 @@ def clash(
     given = scene_of(scene)
     made = _farcull.clash(
         given, _arguments.number("clearance", clearance), _arguments.weld(tolerance, "tolerance"),
-        _arguments.ignored(ignore, given),
-        _arguments.flag("depth", depth), _arguments.threads(threads),
+        _arguments.ignored(ignore, given), _arguments.flag("depth", depth), _arguments.threads(threads),
     )
     return Clash(made, scene)
 
 
 def show(
-    what: Union[Scene, Record, Result, Clash], path: Union[None, str, os.PathLike[str]] = None, *,
-    browse: bool = True,
+    what: Union[Scene, Record, Result, Clash], path: Union[None, str, os.PathLike[str]] = None, *, browse: bool = True,
 ) -> str:
     """Writes a page on which the answer can be turned and explored, and opens it in the browser.
 

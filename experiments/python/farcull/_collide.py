@@ -140,8 +140,7 @@ class Collider:
 
     def find(
         self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
-        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
-        poses: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None, poses: Optional[ArrayLike] = None,
     ) -> Result:
         """Returns the pairs that collide. V, F, object_starts, labels and poses are the parameters of :func:`collide`.
 
@@ -152,15 +151,12 @@ class Collider:
         before, self._grouped = self._grouped, None
         grouped, given = _arguments.arrays(V, F, object_starts, labels, poses, before)
         if labels is not None and self._needs_numbers:
-            raise InputError(
-                "labels", "have no meaning with the ignored numbers or the limit of a Collider",
-                "sort the triangles by label and give object_starts, or call farcull.collide",
-            )
+            raise InputError("labels", "have no meaning with the ignored numbers or the limit of a Collider",
+                             "sort the triangles by label and give object_starts, or call farcull.collide")
         return self._find(grouped, given)
 
     def _find(
-        self, grouped: _arguments.Grouped, given: _arguments.Arrays,
-        shown: Optional[Tuple[Any, Any, Any]] = None,
+        self, grouped: _arguments.Grouped, given: _arguments.Arrays, shown: Optional[Tuple[Any, Any, Any]] = None,
     ) -> Result:
         found = _arguments.ask(self, self._collider, grouped, given)
         for of in ("", "neighbour_"):
@@ -175,10 +171,8 @@ class Collider:
 def collide(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
     self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0, neighbours: bool = True,
-    threads: int = 0, contacts: bool = False,
-    ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
-    labels: Optional[ArrayLike] = None, segments: bool = False,
-    poses: Optional[ArrayLike] = None,
+    threads: int = 0, contacts: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
+    labels: Optional[ArrayLike] = None, segments: bool = False, poses: Optional[ArrayLike] = None,
 ) -> Result:
     """Returns all pairs of triangles that collide: of different objects, and of objects tested against themselves.
     For many frames, keep a :class:`Collider`.
@@ -210,10 +204,8 @@ def collide(
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     if limit is not None and labels is not None:
-        raise InputError(
-            "limit", "has no meaning with labels: rows are found in the order of the labels",
-            "sort the triangles by label and give object_starts",
-        )
+        raise InputError("limit", "has no meaning with labels: rows are found in the order of the labels",
+                         "sort the triangles by label and give object_starts")
     all_objects, each = _arguments.selves(self)
     selves = each or all_objects
     collider = Collider(
@@ -224,9 +216,7 @@ def collide(
     return collider._find(grouped, given, (given[0], grouped, selves) if usual else None)
 
 
-def join(
-    *meshes: Any, weld: Union[None, float, str] = None
-) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+def join(*meshes: Any, weld: Union[None, float, str] = None) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
     """Returns V, F and object_starts, the arguments of :func:`collide`, for meshes.
 
     A mesh is a pair (V, F), an object with ``vertices`` and ``faces`` (trimesh), or an object with ``points`` and

@@ -127,23 +127,19 @@ class DistanceFinder:
 
     def find(
         self, V: Optional[ArrayLike] = None, F: Optional[ArrayLike] = None,
-        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None,
-        poses: Optional[ArrayLike] = None,
+        object_starts: Optional[ArrayLike] = None, labels: Optional[ArrayLike] = None, poses: Optional[ArrayLike] = None,
     ) -> Distances:
         """Returns the distances. The parameters are those of :func:`distances`. Poses alone move the arrays of the
         previous call. The finder can be used again after an error, and after Ctrl-C."""
         before, self._grouped = self._grouped, None
         if labels is not None and self._ignores:
-            raise InputError(
-                "labels", "have no meaning with the ignored numbers of a DistanceFinder",
-                "sort the triangles by label and give object_starts, or call farcull.distances",
-            )
+            raise InputError("labels", "have no meaning with the ignored numbers of a DistanceFinder",
+                             "sort the triangles by label and give object_starts, or call farcull.distances")
         return self._find(*_arguments.arrays(V, F, object_starts, labels, poses, before))
 
     def _find(self, grouped: _arguments.Grouped, given: _arguments.Arrays) -> Distances:
         found = _arguments.ask(self, self._finder, grouped, given)
-        texts = found["squared"] or [None] * len(found["distance"])
-        found["squared"] = np.array(texts, dtype=object)
+        found["squared"] = np.array(found["squared"] or [None] * len(found["distance"]), dtype=object)
         if grouped.order is not None:
             found["triangles"] = grouped.order[found["triangles"]]
         if grouped.labels is not None:
@@ -153,8 +149,7 @@ class DistanceFinder:
 
 def distances(
     V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None, kind: Kind = "objects",
-    k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False,
-    inside: bool = True, threads: int = 0,
+    k: int = 1, within: Optional[float] = None, self: Union[bool, Sequence[bool]] = False, inside: bool = True, threads: int = 0,
     labels: Optional[ArrayLike] = None, ignore: Optional[ArrayLike] = None,
     poses: Optional[ArrayLike] = None, exact: bool = False,
 ) -> Distances:
@@ -182,7 +177,6 @@ def distances(
     """
     grouped, given = _arguments.arrays(V, F, object_starts, labels, poses)
     finder = DistanceFinder(
-        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads,
-        ignore=grouped.ignored(ignore), exact=exact,
+        kind=kind, k=k, within=within, self=self, inside=inside, threads=threads, ignore=grouped.ignored(ignore), exact=exact,
     )
     return finder._find(grouped, given)

@@ -117,8 +117,7 @@ class Check:
 
 
 def check(
-    scene: "Scene", certificate: Optional[str] = None, pairs: Optional[ArrayLike] = None,
-    clearance: Optional[float] = None,
+    scene: "Scene", certificate: Optional[str] = None, pairs: Optional[ArrayLike] = None, clearance: Optional[float] = None,
 ) -> Check:
     """Proves or refutes a certificate, a list of pairs, or both, with integer arithmetic only.
 
@@ -172,13 +171,10 @@ def picture(
     """
     if isinstance(methods, (str, dict)):
         methods = [methods]
-    panels = []
-    for one in methods:
-        options = dict(one) if isinstance(one, dict) else {"method": one}
-        panels.append(_options(options.pop("method", "boxes"), options))
+    asked = [dict(one) if isinstance(one, dict) else {"method": one} for one in methods]
+    panels = [_options(options.pop("method", "boxes"), options) for options in asked]
     pixels, shown, html = _farcull.picture(
-        scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
-        _arguments.flag("zoom", zoom),
+        scene_of(scene), panels, _arguments.text("view", view), _arguments.text("up", up), _arguments.flag("zoom", zoom),
         _arguments.integer("width", width, 1, 10**6),
         _arguments.integer("height", height, 1, 10**6), _arguments.text("device", device),
         _arguments.threads(threads), _arguments.flag("page", page),

@@ -54,12 +54,9 @@ class Scene:
     self: List[bool]  # which objects are tested against themselves
 
     def __init__(
-        scene, /, *names: Union[str, os.PathLike[str]], self: bool = False,
-        weld: Union[None, float, str] = None,
+        scene, /, *names: Union[str, os.PathLike[str]], self: bool = False, weld: Union[None, float, str] = None,
     ) -> None:
-        scene._scene = _farcull.scene_of_names(
-            _names(names), _arguments.weld(weld), _arguments.flag("self", self)
-        )
+        scene._scene = _farcull.scene_of_names(_names(names), _arguments.weld(weld), _arguments.flag("self", self))
         _warn()
 
     @classmethod
@@ -71,8 +68,7 @@ class Scene:
     @staticmethod
     def from_arrays(
         V: ArrayLike, F: ArrayLike, object_starts: Optional[ArrayLike] = None,
-        self: Union[bool, Sequence[bool]] = False, name: str = "arrays",
-        names: Optional[Sequence[str]] = None,
+        self: Union[bool, Sequence[bool]] = False, name: str = "arrays", names: Optional[Sequence[str]] = None,
     ) -> Scene:
         """Returns a scene with copies of the arrays. ``names``: names of the objects; default "0", "1" and so on.
         Raises InputError as :func:`collide` does."""
@@ -80,12 +76,8 @@ class Scene:
         all_objects, each = _arguments.selves(self)
         if isinstance(names, str):
             raise InputError("names", "are one text", "give a list of texts")
-        return Scene._of(
-            _farcull.scene_of_arrays(
-                *given, _arguments.text("name", name),
-                [_arguments.text("names", one) for one in names or []], all_objects, each,
-            )
-        )
+        return Scene._of(_farcull.scene_of_arrays(
+            *given, _arguments.text("name", name), [_arguments.text("names", one) for one in names or []], all_objects, each))
 
     def __getattr__(scene, name: str) -> Any:
         if name.startswith("_"):
@@ -112,15 +104,12 @@ class Scene:
         if len(self.ignored):
             raise InputError("scene", "ignores objects, which a pickle does not hold", "pass its file")
         return _of_arrays, (
-            np.array(self.vertices), np.array(self.triangles), self.object_starts, self.self, self.name,
-            self.names,
+            np.array(self.vertices), np.array(self.triangles), self.object_starts, self.self, self.name, self.names,
         )
 
     def __repr__(self) -> str:
-        return (
-            f"<farcull.Scene {self.name!r}: {_arguments.counted(len(self.names), 'object')}, "
-            f"{_arguments.counted(len(self.triangles), 'triangle')}>"
-        )
+        return (f"<farcull.Scene {self.name!r}: {_arguments.counted(len(self.names), 'object')}, "
+                f"{_arguments.counted(len(self.triangles), 'triangle')}>")
 
 
 def _of_arrays(V: Any, F: Any, starts: Any, self: Any, name: str, names: Any) -> Scene:
@@ -147,9 +136,7 @@ class Frames:
             asked = f"{first}:{last}"
         else:
             asked = str(_arguments.integer("frames", frames, 1, most))
-        collection._frames = _farcull.Frames(
-            _names(names), _arguments.weld(weld), asked, _arguments.flag("self", self)
-        )
+        collection._frames = _farcull.Frames(_names(names), _arguments.weld(weld), asked, _arguments.flag("self", self))
         _warn()
 
     def __len__(self) -> int:

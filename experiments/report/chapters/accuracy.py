@@ -28,8 +28,7 @@ def lines_of(group, seeds):
     """Returns the missed pairs of each contestant by resolution: the median over the seeds, the least and the most."""
     out = []
     for name, rows in by(group, "contestant"):
-        missed = rows.assign(missed=column(rows, "missed")).groupby("resolution").missed.agg(
-            ["median", "min", "max", "count"])
+        missed = rows.assign(missed=column(rows, "missed")).groupby("resolution").missed.agg(["median", "min", "max", "count"])
         missed = missed[missed["count"] == seeds]  # else the median would be over fewer scenes
         ends = ([], []) if seeds == 1 else (list(missed["min"]), list(missed["max"]))
         out += [Series(name, list(missed.index), list(missed["median"]), emphasis=name in OURS, y_low=ends[0],
@@ -80,8 +79,7 @@ def kept_figure(rows):
             group, log("candidates / colliding pairs", zero=True), log("missed pairs (%)", zero=True, high=100),
             [series_of(name, of, lambda row: row.candidates / row.colliding,
                        lambda row: share(number(row, "missed"), row.colliding), style="points")
-             for name, of in sorted(by(here[here.series != ""], "series"))],
-            [Mark(at, "boxes alone (exact)") for at in boxes]))
+             for name, of in sorted(by(here[here.series != ""], "series"))], [Mark(at, "boxes alone (exact)") for at in boxes]))
     out.caption += f" n = {counted((rows.series != '').sum(), 'run', 'runs')}."
     return out
 
@@ -140,8 +138,7 @@ def add_sums(chapter, rows):
     others = rows[~rows.index.isin(promising(rows).index) & ~rows.method.str.contains("cullide") & (rows.method != "exact")]
     for name, runs in others.groupby("contestant"):
         chapter.find(f"{name} promises nothing, and missed {missed_of(runs)} colliding pairs in "
-                     f"{counted(len(runs), 'run', 'runs')} here"
-                     f"{not_snapped(runs) if 'published radius' in name else ''}.")
+                     f"{counted(len(runs), 'run', 'runs')} here{not_snapped(runs) if 'published radius' in name else ''}.")
 
 
 def pictures_of(rows):
@@ -168,6 +165,5 @@ def fill(chapter, study):
     add_sizes(chapter, rows)
     add_sums(chapter, rows)
     if len(rows):
-        chapter.figures = [missed_figure(rows), kept_figure(rows)]
-        chapter.tables = [forms]
+        chapter.figures, chapter.tables = [missed_figure(rows), kept_figure(rows)], [forms]
         chapter.pictures = pictures_of(rows)

@@ -35,8 +35,7 @@ def figure_of(courses):
                  "candidates that culling leaves to exact predicates. Most candidates are neighbours, which both "
                  "methods hand to the predicates: a triangle of the grid shares a vertex with twelve others. n = "
                  f"{counted(len(courses), 'simulation', 'simulations')}, one of each stiffness.")
-    for title, label, count, low in (("total energy", "J", "total", None),
-                                     ("work of a step", "factorizations", "iterations", 0)):
+    for title, label, count, low in (("total energy", "J", "total", None), ("work of a step", "factorizations", "iterations", 0)):
         out.panels.append(Panel(title, Axis("frame"), Axis(label, low=low), [
             over_frames(f"{name} N/m", pairs, count) for name, (pairs, _, _) in courses.items()]))
     for name, (pairs, far, _) in courses.items():
@@ -64,8 +63,7 @@ def table_of(courses):
             f"{column(pairs, 'residual').fillna(0).max():.2g}", rounded(energy.iloc[0]), rounded(energy.iloc[-1]),
             grouped((colliding > 0).sum()), rounded(colliding.max(), 6),
             *(grouped(total(pairs, count) + total(far, count)) for count in ("accounted", "missed")),
-            *("-" if column(far, count).isna().all() else grouped(total(far, count))
-              for count in ("at_risk", "at_risk_bare"))])
+            *("-" if column(far, count).isna().all() else grouped(total(far, count)) for count in ("at_risk", "at_risk_bare"))])
     return out
 
 
@@ -124,8 +122,7 @@ def fill(chapter, study):
     add_promises(chapter, study)
     for name, (pairs, far, _) in courses.items():
         add_power(chapter, study.rows, name, pairs, far)
-        failed = len(pairs) - len(where_true(pairs, "converged"))
-        if failed:
+        if failed := len(pairs) - len(where_true(pairs, "converged")):
             chapter.find_broken(f"At {name} N/m {failed} of {grouped(len(pairs))} steps did not converge.")
         add_energy(chapter, name, pairs)
     add_agreement(chapter, courses)

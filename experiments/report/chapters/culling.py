@@ -20,8 +20,7 @@ def with_ways(rows):
 
 def table_of(scenes):
     out = Table(
-        "culling",
-        "Pairs that collide, pairs whose boxes overlap, and candidates for each pair that collides: of boxes of "
+        "culling", "Pairs that collide, pairs whose boxes overlap, and candidates for each pair that collides: of boxes of "
         "triangles, of FCL's oriented boxes, and of the method boxes",
         columns(["scene"], ["colliding", "boxes overlap", "boxes of triangles", "oriented", "Boxes"]))
     for scene, ways in scenes.items():

@@ -36,6 +36,5 @@ def fill(chapter, study, device, others):
                       total(of, "candidates")]
             table.rows.append([name, method, *map(grouped, counts), rounded(median(ratios)) if len(ratios) else "-"])
         if len(rows):
-            chapter.find(f"On {name} counts differ from those on {device} at {of_all(rows.differs.sum(), len(rows))} "
-                         "points.")
+            chapter.find(f"On {name} counts differ from those on {device} at {of_all(rows.differs.sum(), len(rows))} points.")
     chapter.tables += [table] * bool(table.rows)

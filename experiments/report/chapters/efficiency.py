@@ -32,20 +32,16 @@ def figure_of(scenes):
     n = (f"n = {'' if len(counts) == 1 else f'{counts[0]} to '}{counted(counts[-1], 'frame', 'frames')} of each scene, "
          "each run once.")
     axis = Axis("frame", low=0, high=max(1, *(int(frames.index.max()) for frames in scenes.values())))
-
-    def line(name, values, **look):
-        return Series(name, list(values.index), list(values), **look)
-
     return Figure(
         "efficiency", "Triangles that are left to exact tests, frame by frame",
         "I-COLLIDE as published ends with the objects whose boxes meet (all their triangles), ours goes on to boxes of "
         f"triangles. FAR is drawn with both offsets. No method can leave fewer than the triangles that collide. {n}",
         [Panel(scene, axis, log("triangles", zero=True), [
-            line("I-COLLIDE, objects", frames.object_triangles[BOXES]),
-            line("I-COLLIDE, triangles", frames.kept_triangles[BOXES])] + [
-                line(method, frames.kept_triangles[method], emphasis=method != PAIRS)
+            line_of("I-COLLIDE, objects", frames.object_triangles[BOXES]),
+            line_of("I-COLLIDE, triangles", frames.kept_triangles[BOXES])] + [
+                line_of(method, frames.kept_triangles[method], emphasis=method != PAIRS)
                 for method in (OBB, EXACT, PAIRS) if measured(frames, method)] + [
-                    line("colliding triangles", frames.colliding_triangles[BOXES], style="lines")])
+                    line_of("colliding triangles", frames.colliding_triangles[BOXES], style="lines")])
          for scene, frames in scenes.items()])
 
 
@@ -64,8 +60,7 @@ def table_of(scenes):
 def add_factors(chapter, scenes):
     def range_of(method, name):
         """Returns the median factors of the scenes, ascending, and a text with the first and the last."""
-        of = sorted((median(values), scene) for scene, frames in scenes.items()
-                    if (values := factors(frames, method, name)))
+        of = sorted((median(values), scene) for scene, frames in scenes.items() if (values := factors(frames, method, name)))
         return of, " to ".join(f"{rounded(factor)} ({scene})" for factor, scene in (of[:1] + of[-1:]))
 
     for method, offset in ((OBB, "boxes"), (EXACT, "exact offsets")):
@@ -82,8 +77,7 @@ def add_missed(chapter, rows):
     parts = [f"{method} {of_all(total(of, 'missed'), total(of, 'colliding'))}"
              for method in (OBB, EXACT, PAIRS, BOXES, PLAIN, QUICK) if len(of := known[known.contestant == method])]
     if parts:
-        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame): "
-                     f"{listed(parts)}.")
+        chapter.find(f"Colliding pairs missed, over all frames (a pair counts once in each frame): {listed(parts)}.")
 
 
 def add_quick(chapter, scenes):

@@ -65,8 +65,7 @@ def entry_of(rows):
     first = next(rows.itertuples())
     one = len(rows) == 1 and first.runs
     return Entry(first, first.contestant, first.runs if one else tuple(rows.total_ms),
-                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
-                 first.rounds if one else ())
+                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")), first.rounds if one else ())
 
 
 def groups_of(rows, scenes):
@@ -94,8 +93,7 @@ def sample_of(groups):
 def cloud(name, points):
     """Returns a Series. points: triples of an Estimate of the time, the value y, and the resolution. A line connects the
     points with a resolution; other points are not connected."""
-    out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points",
-                 emphasis=name in OURS)
+    out = Series(name, style="lines_points" if sum(pixels > 0 for *_, pixels in points) > 1 else "points", emphasis=name in OURS)
     for time, y, pixels in points:
         ends = (time.low, time.high) if time.n > 1 else (NONE, NONE)
         values = [(time.value, y, *ends)]
@@ -251,10 +249,8 @@ def fill(chapter, study):
     if groups:
         add_fastest(chapter, groups)
     for name in ("fcl-float", "fcl-double", "ode-trimesh"):  # libraries that have their own test of triangles
-        of = rows[rows.method == name]
-        if len(of):
+        if len(of := rows[rows.method == name]):
             chapter.find(f"{name} misses {of_rows(of, 'missed', 'colliding')} colliding pairs and reports "
                          f"{grouped(total(of, 'wrong'))} that do not collide, in {grouped(len(of))} scenes.")
     if groups:
-        chapter.figures = [figure_of(groups)]
-        chapter.tables = [front_table(groups), equal_table(groups)]
+        chapter.figures, chapter.tables = [figure_of(groups)], [front_table(groups), equal_table(groups)]

@@ -33,13 +33,11 @@ def with_families(rows):
         for part in json.loads(text(row, "scores") or "[]"):
             if not isinstance(part, list) or len(part) != len(SCORE) + 6:
                 raise Damaged(f"'{part}' is no score of this version of farcull")
-            families.setdefault(part[0], []).append(
-                dict(zip(["parameter", "kind", *SCORE, "worst", "ns", "reason"], part[1:])))
+            families.setdefault(part[0], []).append(dict(zip(["parameter", "kind", *SCORE, "worst", "ns", "reason"], part[1:])))
         for family, parts in families.items():
             known = DOCUMENTED.get(row.method, {})
             out.append({"method": row.method, "family": family, "asks": family.partition("/")[0], "parts": parts,
-                        "promises": flag(row, "promises"),
-                        **{name: known.get(name) or text(row, name) for name in CARD},
+                        "promises": flag(row, "promises"), **{name: known.get(name) or text(row, name) for name in CARD},
                         **{name: sum(part[name] for part in parts) for name in SCORE},
                         "worst": max(part["worst"] for part in parts), "total_ms": sum(part["ns"] for part in parts) / 1e6})
     return pd.DataFrame(out, columns=["method", "family", "asks", "parts", "promises", *CARD, *SCORE, "worst", "total_ms"])
@@ -84,10 +82,9 @@ def overview(rows, pairs):
     start, counts = (
         "Pairs of triangles: missed (they meet, and it says apart) and false alarms (they are apart, and it says that "
         "they meet), per million of the pairs that were answered", ["asked"]) if pairs else (
-        "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were reported; missed per "
-        "million of the colliding pairs of those meshes that were answered, false alarms per million of the reported "
-        "pairs, since nobody counts the pairs of a mesh that are apart. Both rates are "
-        "given", ["colliding", "reported"])
+        "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were reported; missed per million of the "
+        "colliding pairs of those meshes that were answered, false alarms per million of the reported pairs, since nobody counts "
+        "the pairs of a mesh that are apart. Both rates are given", ["colliding", "reported"])
     out = Table(
         "libraries" if pairs else "libraries-meshes",
         f"{start}, first by what the documentation of each promises, then by closed triangles. "
@@ -154,30 +151,25 @@ def trust_table(rows):
         "triangles meet? Meshes: which of their pairs meet (missed pairs and pairs that are apart are wrong)? Distance: how far "
         "are two triangles apart (an error of a millionth is wrong)? Self: does a mesh meet itself? Inside: is a point in a "
         "solid (points at a vertex count for farcull's methods alone)? Clash: do the insides of two solids meet? + none: so many "
-        "got no answer. Empty: it has no function for that",
-        columns(["contestant", "library"], asked + ["ns a pair"]),
+        "got no answer. Empty: it has no function for that", columns(["contestant", "library"], asked + ["ns a pair"]),
         [[name, of.library.iloc[0], *(cell(of, asks) for asks in asked), ns(of)]
          for name, of in sorted(by(rows, "method"), key=lambda both: rate(both[1]))])
 
 
 def uses_table(rows):
-    known = {}
-    for row in rows.drop_duplicates("method").itertuples():
-        known.setdefault(row.use, []).append(row.method)
     return Table("libraries-use", "What each is made for, by its documentation where it is quoted",
-                 columns(["contestants", "made for"], []), [[", ".join(names), use] for use, names in known.items()])
+                 columns(["contestants", "made for"], []),
+                 [[", ".join(of.method), use] for use, of in by(rows.drop_duplicates("method"), "use")])
 
 
 def questions_table(rows):
     """Returns a table of the errors of distances, with a column for each kind."""
-    names = {"zero": "zero", "not zero": "not_zero", "negative": "negative", "off": "off", "points": "points",
-             "points off": "points_off"}
+    names = {name: name.replace(" ", "_") for name in ("zero", "not zero", "negative", "off", "points", "points off")}
     return Table(
         "libraries-distances",
         "Distances of two triangles: 0 though they are apart; above 0 though they meet; negative; with a relative error above "
         "a millionth; the largest relative error; the points that were given, and those that lie off their triangle or their "
-        "distance by more than a millionth",
-        columns(["contestant"], ["answered", *names, "largest error"]),
+        "distance by more than a millionth", columns(["contestant"], ["answered", *names, "largest error"]),
         [[name, grouped(total(of, "answered")), *(grouped(total(of, key)) for key in names.values()),
           rounded(column(of, "worst").max())] for name, of in by(rows, "method")])
 
@@ -205,8 +197,7 @@ def families_table(rows):
         "libraries-families",
         "Missed / false alarms per million answers and refused / deaths per million pairs that were asked, of each "
         "family, by closed triangles; of meshes the counts", columns(["contestant"] + families, []),
-        [[contestant] + [cell(of[of.family == family]) for family in families]
-         for contestant, of in by(rows, "method")])
+        [[contestant] + [cell(of[of.family == family]) for family in families] for contestant, of in by(rows, "method")])
 
 
 # ---- figures

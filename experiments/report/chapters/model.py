@@ -4,8 +4,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 FACTOR = 1.5    # a prediction within this factor of the measured value counts as right
 FEWEST = 20     # with fewer missed pairs, chance alone can exceed the factor
 # Scenes that were examined while the formula was found. All other scenes and seeds test the formula.
-LOOKED_AT = ["random-soup", "needles:100", "slivers:200:1e3", "crowd:200", "shells:8", "two-tori", "tree-leaves:100",
-             "torii:720"]
+LOOKED_AT = ["random-soup", "needles:100", "slivers:200:1e3", "crowd:200", "shells:8", "two-tori", "tree-leaves:100", "torii:720"]
 WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
         "cullide --rounds 1 --clear all": "CULLIDE, all views clear", "quick-cullide": "Quick-CULLIDE"}
 
@@ -45,22 +44,19 @@ def figure_of(rows):
     drawn = rows[rows.held & (np.maximum(rows.measured, rows.expected) >= FEWEST)]
     out = Figure(
         "model", "Predicted misses against missed pairs",
-        "Each point is a scene, of those that were not looked at while the formula was found, at a resolution: the mean "
-        f"number of missed pairs over {number(next(rows.itertuples()), 'positions')} random positions of the grid of pixels, "
-        f"against the number that the model predicts, where one of both is {FEWEST} or more. On the line both are equal; "
-        f"between the outer lines they differ by a factor of {FACTOR} or less. n = "
-        f"{counted(len(drawn), 'point', 'points')}.")
-    for title, of in (("forms of CULLIDE", drawn[drawn.method != "far"]),
-                      ("FAR below its radius", drawn[drawn.method == "far"])):
+        "Each point is a scene, of those that were not looked at while the formula was found, at a resolution: the mean number "
+        f"of missed pairs over {number(next(rows.itertuples()), 'positions')} random positions of the grid of pixels, against "
+        f"the number that the model predicts, where one of both is {FEWEST} or more. On the line both are equal; between the "
+        f"outer lines they differ by a factor of {FACTOR} or less. n = {counted(len(drawn), 'point', 'points')}.")
+    for title, of in (("forms of CULLIDE", drawn[drawn.method != "far"]), ("FAR below its radius", drawn[drawn.method == "far"])):
         if not len(of):
             continue
         ends = np.array([FEWEST, max(of.measured.max(), of.expected.max())])
         panel = Panel(title, log("predicted missed pairs"), log("missed pairs (mean)", True))
-        for way, track in by(of.assign(way=of.way.str.replace(r" \(.*\)", "", regex=True)), "way"):
-            panel.series.append(Series(way, list(track.expected), list(track.measured), "points"))
-        panel.series.append(Series("equal", list(ends), list(ends), "lines"))
-        panel.series.append(Series(f"a factor of {FACTOR}", [*ends, NONE, *ends], [*ends * FACTOR, NONE, *ends / FACTOR],
-                                   "lines"))
+        panel.series = [Series(way, list(track.expected), list(track.measured), "points")
+                        for way, track in by(of.assign(way=of.way.str.replace(r" \(.*\)", "", regex=True)), "way")]
+        panel.series += [Series("equal", list(ends), list(ends), "lines"),
+                         Series(f"a factor of {FACTOR}", [*ends, NONE, *ends], [*ends * FACTOR, NONE, *ends / FACTOR], "lines")]
         out.panels.append(panel)
     return out
 
@@ -97,8 +93,7 @@ def table_of(rows):
     for (way, held), of in rows.groupby(["way", "held"], sort=False):
         some = judged(of)
         part = some[some.share < 0.9]
-        out.rows.append([way, "others" if held else "looked at",
-                         *map(grouped, (len(some), right(some), len(part), right(part))),
+        out.rows.append([way, "others" if held else "looked at", *map(grouped, (len(some), right(some), len(part), right(part))),
                          rounded(typical_error(part)), grouped(total(of, "positions")), grouped(total(of, "outside"))])
     return out
 
@@ -138,5 +133,4 @@ def fill(chapter, study):
         add_share(chapter, of[of.method != "far"], f"CULLIDE and Quick-CULLIDE, {scenes}")
         add_share(chapter, of[of.method == "far"], f"FAR without fattening and below its radius, {scenes}")
     add_worst(chapter, rows)
-    chapter.figures = [figure_of(rows), resolution_figure(rows)]
-    chapter.tables = [table_of(rows)]
+    chapter.figures, chapter.tables = [figure_of(rows), resolution_figure(rows)], [table_of(rows)]

@@ -6,11 +6,10 @@ TIME = "median_ms"
 MEASURES = {"kept triangles": "kept_triangles", "false pos. / colliding": "false_positives", "fragments": "fragments",
             "time (ms)": TIME}
 CAPTION = (
-    "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one "
-    "than they collide with. False positives: pairs handed to exact tests that do not collide, over pairs that do. "
-    "Fragments: pixel centres in which the fattened triangle is stored or asked in one drawing of all triangles in every "
-    "view. Times: from triangles to pairs, with their intervals as bars, without contexts and shaders; FAR with exact "
-    "offsets draws boxes first.")
+    "Kept triangles: no method can keep fewer than collide; FAR keeps a set, whose triangles may each meet another one than they "
+    "collide with. False positives: pairs handed to exact tests that do not collide, over pairs that do. Fragments: pixel "
+    "centres in which the fattened triangle is stored or asked in one drawing of all triangles in every view. Times: from "
+    "triangles to pairs, with their intervals as bars, without contexts and shaders; FAR with exact offsets draws boxes first.")
 
 
 def figure_of(rows):
@@ -21,8 +20,7 @@ def figure_of(rows):
                           times_of(method, track, "resolution", emphasis=method == BOX) if of == TIME else
                           series_of(method, track, "resolution", of, emphasis=method == BOX)
                           for method, track in by(here, "contestant")])
-                      for at, (label, of) in enumerate(MEASURES.items()) for scene, here in scenes],
-                  columns=len(scenes))
+                      for at, (label, of) in enumerate(MEASURES.items()) for scene, here in scenes], columns=len(scenes))
 
 
 def table_of(rows):

@@ -43,8 +43,7 @@ def figure_of(rows, rounding):
                       marks=[Mark(rounding[bits[:2]], "rounding of the map", vertical=False)])
         for line, of in sorted(groups(here, "line"), key=lambda pair: pair[0] != OURS):
             depths = groups(of, "depth")
-            panel.series.append(Series(line, [d for d, _ in depths], [drawn(cell) for _, cell in depths],
-                                       emphasis=line == OURS))
+            panel.series.append(Series(line, [d for d, _ in depths], [drawn(cell) for _, cell in depths], emphasis=line == OURS))
         out.panels.append(panel)
     return out
 
@@ -52,8 +51,7 @@ def figure_of(rows, rounding):
 def table_of(rows):
     return Table("precision", "Points over all generators, sides and depths: without a sample, not bounded, and "
                  "outside by no more than rounding; how far outside at most",
-                 columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)",
-                                                  "most (px)"]),
+                 columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)", "most (px)"]),
                  [[*key, *(grouped(total(of, name)) for name in COUNTS), rounded(most(of, "largest_steps")),
                    rounded(most(of, "largest_px"))] for key, of in groups(rows, ["line", "bits"])])
 
@@ -89,5 +87,4 @@ def fill(chapter, study):
     add_violations(chapter, rows)
     add_deep_windows(chapter, rows)
     if len(rows):
-        chapter.figures = [figure_of(rows, study.constants["depth_rounding"])]
-        chapter.tables = [table_of(rows)]
+        chapter.figures, chapter.tables = [figure_of(rows, study.constants["depth_rounding"])], [table_of(rows)]

@@ -46,8 +46,7 @@ class SetScene:
         return self.value(BOXES, at_boxes, "set_triangles") / kept if kept else NONE
 
     def series(self, method, what, **look):
-        of = self.of(method)
-        return Series(method, list(of.index), list(of[what]), emphasis=method == RELIABLE, **look)
+        return line_of(method, self.of(method)[what], emphasis=method == RELIABLE, **look)
 
 
 def scenes_of(rows, at):
@@ -93,8 +92,7 @@ def add_kept_promises(chapter, all_rows):
             chapter.find(f"At risk of a diagram, since they are lost on the same scenes: {listed(words)}. Boxes and trees "
                          "have no cells that could lose a neighbour.")
     if len(distances) and not broken:
-        chapter.find(f"Of the distances of farcull {of_all(0, total(distances, 'asked'))} were not the nearest "
-                     "double.")
+        chapter.find(f"Of the distances of farcull {of_all(0, total(distances, 'asked'))} were not the nearest double.")
 
 
 # ---- sets: what is lost, and sizes
@@ -103,7 +101,7 @@ def lost_figure(scenes):
     def lost_series(scene, method):
         of = scene.of(method)
         of = of[of.with_nearest > 0]
-        return Series(method, list(of.index), list(100 * of.missed / of.with_nearest), emphasis=method == RELIABLE)
+        return line_of(method, 100 * of.missed / of.with_nearest, emphasis=method == RELIABLE)
 
     scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
     return Figure(
@@ -112,8 +110,7 @@ def lost_figure(scenes):
         "that of the scene. Not widened: the reliable form without the half diagonal of a cell that its proof asks for. "
         f"Scenes of which nothing is lost are in the table. {objects_text(scenes)}.",
         [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
-            series for method in DIAGRAMS if (series := lost_series(scene, method)).x])
-         for scene in scenes])
+            series for method in DIAGRAMS if (series := lost_series(scene, method)).x]) for scene in scenes])
 
 
 def lost_table(scenes, sizes):
@@ -146,8 +143,7 @@ def efficiency_table(rest, moving, finest):
         "proximity-efficiency",
         "Culling efficiency: how many times more triangles the boxes of objects leave in the sets. Of scenes at rest "
         f"the diagrams have {finest} cells along the scene; of scenes that move, the median over the frames with the "
-        "least and the largest",
-        columns(["scene"], ["frames", "triangles per object, boxes", TREES, RELIABLE, PUBLISHED]))
+        "least and the largest", columns(["scene"], ["frames", "triangles per object, boxes", TREES, RELIABLE, PUBLISHED]))
     for scene in rest:
         out.rows.append([scene.base, "-", rounded(scene.value(BOXES, 0, "triangles_each"))] + [
             rounded(scene.factor(*at, 0)) for at in ((TREES, 0), (RELIABLE, finest), (PUBLISHED, finest))])

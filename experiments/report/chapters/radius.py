@@ -16,8 +16,7 @@ def with_axes(rows):
     over = radius.px / budget
     return rows.assign(
         published=rows.radius == "published",
-        factor=[over[i] if r == "published" else 1.0 if r in ("", "budget") else float(r)
-                for i, r in rows.radius.items()],
+        factor=[over[i] if r == "published" else 1.0 if r in ("", "budget") else float(r) for i, r in rows.radius.items()],
         surface=[SURFACES.get(m) or SURFACES.get(d, "fragment depth") for m, d in zip(rows.method, rows.depth_mode)])
 
 
@@ -25,10 +24,6 @@ def shares(rows, by, part, whole):
     """Returns sum of `part` / sum of `whole`, in per cent, for each value of the columns `by`."""
     sums = rows.assign(part=column(rows, part), whole=column(rows, whole)).groupby(by)[["part", "whole"]].sum()
     return 100 * sums.part / sums.whole
-
-
-def series(name, values, style="lines_points", **look):
-    return Series(name, list(values.index), list(values), style, **look)
 
 
 # ---- the lemmas
@@ -43,11 +38,10 @@ def lemma_figure(lemmas):
     panel = panel_of("all radii", "violated points (%)")
     for surface, rows in groups(lemmas, "surface"):
         each = shares(rows[~rows.published], ["factor", "generator"], "violations", "points")
-        panel.series.append(series(surface, each.groupby(level=0).max(), emphasis=surface == "fragment depth"))
-        published = rows[rows.published]
-        if len(published):
+        panel.series.append(line_of(surface, each.groupby(level=0).max(), emphasis=surface == "fragment depth"))
+        if len(published := rows[rows.published]):
             each = shares(published, ["factor", "generator"], "violations", "points").droplevel(1)
-            panel.series.append(series(f"{surface}, published radius", each, "points"))
+            panel.series.append(line_of(f"{surface}, published radius", each, "points"))
     close = Panel("close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
                   [Series(**vars(s)) for s in panel.series], panel.marks)
     return Figure(
@@ -62,11 +56,10 @@ def miss_figure(runs):
     out = Figure("radius-missed", "Missed pairs against the radius")
     for depth, of in groups(runs, "surface"):
         panel = panel_of(depth, "missed pairs (%)")
-        panel.series = [series(scene, shares(rows, "factor", "missed", "colliding"))
+        panel.series = [line_of(scene, shares(rows, "factor", "missed", "colliding"))
                         for scene, rows in groups(of[~of.published], "scene")]
-        published = of[of.published]
-        if len(published):
-            panel.series.append(series("published radius, each scene", shares(
+        if len(published := of[of.published]):
+            panel.series.append(line_of("published radius, each scene", shares(
                 published, ["factor", "scene"], "missed", "colliding").droplevel(1), "points"))
         out.panels.append(panel)
     colliding = [f"{count_cell(rows.iloc[-1], 'colliding')} in {scene}" for scene, rows in groups(runs, "scene")]
@@ -156,9 +149,8 @@ def add_headline(chapter, runs, placements):
                 f"; its failure end to end rests on the constructed pixel-corners, where it missed {of}"
                 if lost == 0 and total(constructed, "missed") else
                 f"; on the constructed pixel-corners it missed {of} here{not_snapped(constructed)}")
-        chapter.find("On scenes that were not constructed against it, the published radius missed "
-                     f"{missed_of(natural)} colliding pairs in "
-                     f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
+        chapter.find(f"On scenes that were not constructed against it, the published radius missed {missed_of(natural)} "
+                     f"colliding pairs in {counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
         # If smaller radii miss nothing either, these scenes show nothing about the radius.
         smaller = runs[(runs.factor == 0.9) & (runs.depth_mode == "fragment")]
         bare = runs[(runs.factor == 0) & (runs.depth_mode == "fragment")]
@@ -171,8 +163,7 @@ def add_headline(chapter, runs, placements):
         more = f", the longest of them {longest} px long," if total(rows, "missed") else ""
         said.append(f"{rate_of_rows(rows)}{more} with {bits_text(bits)}")
     if said:
-        chapter.find("Of patches placed into each other at random, the published radius missed something in "
-                     f"{listed(said)}.")
+        chapter.find(f"Of patches placed into each other at random, the published radius missed something in {listed(said)}.")
     # A rate of 0 means little unless smaller radii miss something in the same placements.
     words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
              for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
@@ -203,9 +194,8 @@ def placement_figure(placements):
 
 
 def placement_table(placements):
-    out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
-                "collides, of both kinds of patches and of contacts together. In brackets the rate with its 95 % interval, or "
-                "the 95 % bound",
+    out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one collides, of "
+                "both kinds of patches and of contacts together. In brackets the rate with its 95 % interval, or the 95 % bound",
                 columns(["radius"], ["side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
                                      "largest miss (px)"]))
     for (radius, bits, resolution, side), rows in groups(placements, ["radius", "bits", "resolution", "side"]):

@@ -26,9 +26,8 @@ def caption_of(rows, drawn):
     sides = sorted({side for plot in PLOTS if plot != "resolution" for side in resolutions(rows_of(rows, plot))})
     drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and "
                "not at the largest sizes. ") if sides else ""
-    return (f"{sample_text(drawn)}. Bars are the intervals. Both axes are logarithmic, so that a power of x "
-            f"is a straight line. {drawing}Density and colliding pairs are two views of the same rows: the same "
-            "objects in ever smaller boxes.")
+    return (f"{sample_text(drawn)}. Bars are the intervals. Both axes are logarithmic, so that a power of x is a straight line. "
+            f"{drawing}Density and colliding pairs are two views of the same rows: the same objects in ever smaller boxes.")
 
 
 def fill(chapter, study):

@@ -27,15 +27,13 @@ def self_text(row):
 
 def table_of(rows, at):
     return Table(
-        "scenes", "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, "
-        "without neighbours inside an object. Then the pixels that the median triangle covers at "
-        f"{at} px: the area of its image in the views x, y and z; at twice the resolution it covers four times as many. "
-        "The median is that of the triangles whose box meets another object's or whose object is tested against itself. "
-        "Of a scene that moves, the frame that is named",
+        "scenes", "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, without "
+        f"neighbours inside an object. Then the pixels that the median triangle covers at {at} px: the area of its image in the "
+        "views x, y and z; at twice the resolution it covers four times as many. The median is that of the triangles whose box "
+        "meets another object's or whose object is tested against itself. Of a scene that moves, the frame that is named",
         columns(["scene", "source", "self"], ["frame", "objects", "triangles", "colliding", f"{at} px"]),
         [[row.scene, f"{DRAWN}, seed {row.drawn_with}" if row.source == DRAWN else row.source, self_text(row),
-          str(row.frame) if row.frame >= 0 else "-"] +
-         [count_cell(row, name) for name in ("objects", "triangles", "colliding")] +
+          str(row.frame) if row.frame >= 0 else "-"] + [count_cell(row, name) for name in ("objects", "triangles", "colliding")] +
          ["-" if (px := value(row, "pixels_half")) != px else rounded(px, 2) if px >= 1 else f"{px:.2g}"]
          for row in rows.itertuples()])
 
@@ -48,9 +46,8 @@ def fill(chapter, study):
         chapter.find(
             f"The studies use {len(rows)} scenes: {sources.get(MESHES, 0)} of scanned or modelled meshes, "
             f"{sources.get(SIMULATED, 0)} of simulated cloth, {sources.get(DRAWN, 0)} drawn at random and "
-            f"{sources.get(CONSTRUCTED, 0)} constructed. They have {grouped(triangles.min())} to "
-            f"{grouped(triangles.max())} triangles. In {int((column(rows, 'self_objects') > 0).sum())} of them objects "
-            "are tested against themselves.")
+            f"{sources.get(CONSTRUCTED, 0)} constructed. They have {grouped(triangles.min())} to {grouped(triangles.max())} "
+            f"triangles. In {int((column(rows, 'self_objects') > 0).sum())} of them objects are tested against themselves.")
         chapter.find(f"At {at} px the median triangle covers less than a pixel in {int((pixels < 1).sum())} of "
                      f"{int(pixels.notna().sum())} scenes.")
         chapter.tables = [table_of(rows, at)]

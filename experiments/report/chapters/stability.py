@@ -98,8 +98,7 @@ def table_of(rows, tracks):
                 "took away, of all, and how many culling kept for each one that collides, in the first scene of the "
                 "family and in its last: \"2.14 at 10\" are 2.14 triangles where what the family changes is 10",
                 columns(["family", "method"], ["scenes", "colliding", "missed", "at risk, 0.9", "at risk, no ball",
-                                               "wrong", "by boxes (%)", "by views (%)", "kept, first scene",
-                                               "kept, last scene"]))
+                                               "wrong", "by boxes (%)", "by views (%)", "kept, first scene", "kept, last scene"]))
     for family, method, places in tracks:
         if method == "exact":
             continue
@@ -128,8 +127,7 @@ def add_rises(chapter, tracks):
     for family, methods in families_of(tracks):
         words = []
         for method, places in methods if family in FAMILIES.values() else []:
-            failed = {at: missed for at, rows in places.items() if (missed := missed_share(rows)) > 0}
-            if failed:
+            if failed := {at: missed for at, rows in places.items() if (missed := missed_share(rows)) > 0}:
                 words.append(f"{method} from {number_text(next(iter(failed)))} on, up to {rounded(max(failed.values()))} %")
         if words:
             chapter.find(f"{', '.join(family)}: contacts that vary are missed by {'; '.join(words)}.")
@@ -144,8 +142,7 @@ def add_power(chapter, rows, tracks, names):
             of = [sum(culled_shares(r)) for r in places.values() if column(r, "views_used").notna().any()]
             if method in names and of:
                 little += [method] * (max(of) < LEAST_CULLED)
-                safe += [method] * (method.startswith("FAR (") and
-                                    not risks_of(rows, pd.concat(list(places.values())))[0] > 0)
+                safe += [method] * (method.startswith("FAR (") and not risks_of(rows, pd.concat(list(places.values())))[0] > 0)
         if little:
             why = WHY_LITTLE.get(family[0])
             chapter.find(f"{family[0]}: {listed(little)} cannot cull {LEAST_CULLED} % of the triangles here"
@@ -158,11 +155,9 @@ def add_power(chapter, rows, tracks, names):
 def fill(chapter, study):
     rows = study.rows.assign(contestant=study.rows.contestant.replace(STRICT))
     tracks = tracks_of(rows)
-    names = list(dict.fromkeys(promising(rows).contestant))
     add_promises(chapter, study)
     add_rises(chapter, tracks)
-    add_power(chapter, rows, tracks, names)
+    add_power(chapter, rows, tracks, set(promising(rows).contestant))
     add_failures(chapter, rows)
     if tracks:
-        chapter.figures = [figure_of(tracks)]
-        chapter.tables = [table_of(rows, tracks)]
+        chapter.figures, chapter.tables = [figure_of(tracks)], [table_of(rows, tracks)]

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.h"
-#include "core/boxes/block.h"
 #include "core/view/regions.h"
 #include "tests/lab/reference.h"
 

@@ -56,12 +56,6 @@ std::optional<std::vector<TrianglePair>> pairs_by_motions(const Scene& scene,
   return std::move(found.candidates);
 }
 
-std::vector<TrianglePair> all_pairs(const Scene& scene, const BoxesSettings& settings) {
-  BoxesSettings all = settings;
-  all.full = true;
-  return lab::pairs_by_boxes(scene, all);
-}
-
 TEST(RigidBlocks, GiveThePairsOfTheMovedScene) {
   RandomNumbers random(test_seed(61));
   const int scenes = trials(200), frames = 12;
@@ -88,7 +82,8 @@ TEST(RigidBlocks, GiveThePairsOfTheMovedScene) {
         ++given_up;
         continue;
       }
-      const std::vector<TrianglePair> expected = all_pairs(moved(scene, motions), settings);
+      settings.full = true;
+      const auto expected = lab::pairs_by_boxes(moved(scene, motions), settings);
       ASSERT_EQ(*pairs, expected) << n << " " << frame << " kind " << kind;
       found += expected.size();
       far += kind == lab::kFarMotion && !expected.empty();

@@ -43,15 +43,6 @@ std::uint64_t different_lines(const SolidProgram& program, const Solid& solid,
 const auto kTriangles = static_cast<std::uint64_t>(trials(60'000));
 constexpr std::uint64_t kLines = 37;  // of a triangle
 
-/// Centres around a line, on a grid of half pixels and off it.
-void add_lines(rational::Draws& random, float cx, float cy, std::vector<float>& x,
-               std::vector<float>& y) {
-  for (std::uint64_t i = 0; i < kLines; ++i) {
-    x.push_back(i == 0 ? cx : static_cast<float>(cx + random.uniform(-2, 2)));
-    y.push_back(i == 0 ? cy : static_cast<float>(cy + random.uniform(-2, 2)));
-  }
-}
-
 /// On every instruction set lines through solids that `draw` makes are those of the scalar text;
 /// it says where a line is.
 template <class Draw>
@@ -60,10 +51,12 @@ void expect_scalar_lines(const SolidProgram& program, std::uint64_t seed, const 
     rational::Draws random(seed);
     std::uint64_t lines = 0, different = 0;
     for (std::uint64_t n = 0; n < kTriangles; ++n) {
-      float cx = 0, cy = 0;
-      const Solid solid = draw(random, n, cx, cy);
+      const auto [cx, cy, solid] = draw(random, n);
       std::vector<float> x, y;
-      add_lines(random, cx, cy, x, y);
+      for (std::uint64_t i = 0; i < kLines; ++i) {  // the line itself, and others around it
+        x.push_back(i == 0 ? cx : static_cast<float>(cx + random.uniform(-2, 2)));
+        y.push_back(i == 0 ? cy : static_cast<float>(cy + random.uniform(-2, 2)));
+      }
       lines += x.size();
       different += different_lines(program, solid, x, y);
     }
@@ -73,23 +66,20 @@ void expect_scalar_lines(const SolidProgram& program, std::uint64_t seed, const 
 }
 
 TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
-  expect_scalar_lines(obb_fattener().solid, 20261122,
-                      [](rational::Draws& random, std::uint64_t, float& cx, float& cy) {
-                        Solid solid;
-                        box_line::adversarial(random, solid, cx, cy);
-                        return solid;
-                      });
+  expect_scalar_lines(obb_fattener().solid, 20261122, [](rational::Draws& random, std::uint64_t) {
+    return box_line::adversarial(random);
+  });
 }
 
 TEST(NativeLanes, ExactOffsetsAreThoseOfTheScalarTextBitForBit) {
-  expect_scalar_lines(minkowski_fattener().solid, 20261123,
-                      [](rational::Draws& random, std::uint64_t n, float& cx, float& cy) {
-                        const auto t = minkowski_cases::random_triangle(
-                            random, static_cast<int>(n % minkowski_cases::kKindCount));
-                        const Vec3 p = (t[0] + t[1] + t[2]) / 3;
-                        cx = static_cast<float>(p[0]), cy = static_cast<float>(p[1]);
-                        return minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
-                      });
+  expect_scalar_lines(
+      minkowski_fattener().solid, 20261123, [](rational::Draws& random, std::uint64_t n) {
+        const auto t = minkowski_cases::random_triangle(
+            random, static_cast<int>(n % minkowski_cases::kKindCount));
+        const Vec3 p = (t[0] + t[1] + t[2]) / 3;
+        return std::tuple(static_cast<float>(p[0]), static_cast<float>(p[1]),
+                          minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3)));
+      });
 }
 
 // ---- fattening ----

@@ -2,13 +2,10 @@
 // refuses.
 #include "experiments/command/command.h"
 
-#include <nlohmann/json.hpp>
-
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
 #include "tests/lab/certificates.h"
-#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 namespace {

@@ -2,8 +2,6 @@
 #include "experiments/lemma/lemma.h"
 #include "offsets/offsets.h"
 
-#include <nlohmann/json.hpp>
-
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/run_studies.h"
 #include "tests/lab/test.h"

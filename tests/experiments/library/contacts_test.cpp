@@ -1,7 +1,6 @@
 // What the library says of contacts, and what it leaves out when it is told to: ignored objects,
 // and pairs beyond a limit. Each is held against the answer without that option.
 
-#include "core/base/random.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/flat.h"
 #include "verify/contact.h"

@@ -1,5 +1,4 @@
 // The library as its users see it, held against the method `exact`.
-#include "core/base/random.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/input.h"
 #include "experiments/method/run.h"

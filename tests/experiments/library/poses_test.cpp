@@ -1,7 +1,6 @@
 // Objects that poses move, calls that may be ended, and matrices of Eigen as input. Each answer is
 // held against that of plain arrays.
 
-#include "core/base/random.h"
 #include "experiments/library/distance.h"
 #include "experiments/library/eigen.h"
 #include "experiments/library/input.h"

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
 #include "tests/lab/pairs.h"
 

@@ -1,6 +1,5 @@
 #include "experiments/measure/frames.h"
 
-#include "experiments/scenes/frames.h"
 #include "tests/lab/process.h"
 
 namespace farcull {

@@ -1,6 +1,5 @@
 #include "experiments/measure/harness.h"
 
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"
 
 namespace farcull {
@@ -52,12 +51,6 @@ TEST(MeasurementContext, TheTruthIsWithoutWhatTheSceneIgnores) {
 
 // ---- Intervals by the bootstrap against what combinatorics says about them.
 
-std::vector<double> up_to(int n) {
-  std::vector<double> out;
-  for (int i = 1; i <= n; ++i) out.push_back(i);
-  return out;
-}
-
 double choose(int n, int k) {
   double out = 1;
   for (int i = 0; i < k; ++i) out = out * (n - i) / (i + 1);
@@ -83,7 +76,9 @@ double coverage(int n, int k) {
 
 TEST(Statistics, BootstrapEndsWhereCombinatoricsPutThem) {
   for (const int n : {3, 5, 7, 9, 15}) {
-    const Spread e = spread_of(up_to(n));
+    std::vector<double> up_to_n(static_cast<std::size_t>(n));
+    std::iota(up_to_n.begin(), up_to_n.end(), 1.0);
+    const Spread e = spread_of(up_to_n);
     EXPECT_EQ(e.median, (n + 1) / 2) << n;
     EXPECT_EQ(e.low, lower_rank(n)) << n;
     EXPECT_EQ(e.high, n + 1 - lower_rank(n)) << n;

@@ -3,10 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/peers/peer.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {

@@ -1,7 +1,5 @@
 // What a run is asked about pairs: which objects it ignores, how many pairs it gives, how they
 // meet. For every kind of method, against the run that is asked for all.
-#include <nlohmann/json.hpp>
-
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"

@@ -1,8 +1,5 @@
 // Which canvas draws, with --device and without it, and what the native canvas says of itself.
 // gl_methods_test.cpp tests that GL draws where it is named.
-#include <nlohmann/json.hpp>
-
-#include "core/native/canvas.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"

@@ -32,8 +32,10 @@ ProbeResult probe(const std::string& assumption, bool pass) {
 const ProbeResult kBrokenOff = {
     .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
 
-// Asks for a verdict; counts how often the probes run, and keeps what was said.
+// Asks for a verdict, in a folder of its own; counts how often the probes run, and keeps what was
+// said.
 struct Asked {
+  const CacheFolder folder;
   std::vector<ProbeResult> results = {probe("A2", true), probe("A4", true)};
   int runs = 0;
   std::vector<std::string> said;
@@ -50,13 +52,12 @@ struct Asked {
 };
 
 TEST(DeviceVerdict, IsMadeOnceAndKept) {
-  const CacheFolder folder;
   Asked ask;
   const DeviceVerdict first = ask(device());
   EXPECT_TRUE(first.holds);
   EXPECT_FALSE(first.remembered);
   EXPECT_EQ(first.probes, 2u);
-  EXPECT_TRUE(first.file.starts_with(folder.path("farcull/device-")));
+  EXPECT_TRUE(first.file.starts_with(ask.folder.path("farcull/device-")));
   ASSERT_EQ(ask.said.size(), 1u);
   EXPECT_TRUE(has_text(ask.said[0], "once for this device"));
   const DeviceVerdict again = ask(device());
@@ -69,12 +70,11 @@ TEST(DeviceVerdict, IsMadeOnceAndKept) {
   EXPECT_EQ(to_string(again), found + ", remembered)");
   EXPECT_EQ(ask.runs, 1);
   EXPECT_EQ(ask.said.size(), 1u);
-  const std::filesystem::directory_iterator files(folder.path("farcull"));
+  const std::filesystem::directory_iterator files(ask.folder.path("farcull"));
   EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "nothing is left beside the verdict";
 }
 
 TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
-  const CacheFolder folder;
   Asked ask;
   ask.results[0].pass = false;
   ask.results[0].measured = 2;
@@ -90,7 +90,6 @@ TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
 }
 
 TEST(DeviceVerdict, ABrokenOffProbePromisesNothingAndIsNotKept) {
-  const CacheFolder folder;
   Asked ask;
   ask.results[1] = kBrokenOff;
   const DeviceVerdict verdict = ask(device());
@@ -103,7 +102,6 @@ TEST(DeviceVerdict, ABrokenOffProbePromisesNothingAndIsNotKept) {
 }
 
 TEST(DeviceVerdict, NoProbesAreNoVerdict) {
-  const CacheFolder folder;
   Asked ask;
   ask.results.clear();
   EXPECT_FALSE(ask(device()).holds);
@@ -112,7 +110,6 @@ TEST(DeviceVerdict, NoProbesAreNoVerdict) {
 }
 
 TEST(DeviceVerdict, DependsOnDeviceDriverAndEnvironment) {
-  const CacheFolder folder;
   Asked ask;
   ask(device());
   int runs = 1;
@@ -158,7 +155,6 @@ TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
 
 // Every byte of the file flipped, one at a time, and every length: never believed, made anew.
 TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
-  const CacheFolder folder;
   Asked ask;
   ask.results[0].pass = false;
   const std::string file = ask(device()).file, good = read_text(file);
@@ -182,7 +178,6 @@ TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
 }
 
 TEST(DeviceVerdict, AFileOfAnotherDeviceInItsPlaceIsMadeAnew) {
-  const CacheFolder folder;
   Asked ask;
   const std::string file = ask(device()).file;
   GlInfo other = device();
@@ -197,7 +192,6 @@ TEST(DeviceVerdict, AFileOfAnotherDeviceInItsPlaceIsMadeAnew) {
 }
 
 TEST(DeviceVerdict, ALinkIsNotFollowed) {
-  const CacheFolder folder;
   Asked ask;
   const std::string file = ask(device()).file;
   std::filesystem::rename(file, file + ".elsewhere");
@@ -208,9 +202,8 @@ TEST(DeviceVerdict, ALinkIsNotFollowed) {
 }
 
 TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
-  const CacheFolder folder;
-  folder.write("farcull", "a file where the folder should be");
   Asked ask;
+  ask.folder.write("farcull", "a file where the folder should be");
   for (int run = 1; run <= 2; ++run) {
     const DeviceVerdict verdict = ask(device());
     EXPECT_TRUE(verdict.holds);
@@ -223,7 +216,6 @@ TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
 }
 
 TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
-  const CacheFolder folder;
   Asked ask;
   ask(device());
   keep_verdict(device(), {probe("A6", false)}, 5);
@@ -236,7 +228,6 @@ TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
 // A later run of the probes that does not pass leaves nothing of an older promise, whatever becomes
 // of its own verdict. The twin: one that passes leaves it in place where it cannot be written.
 TEST(DeviceVerdict, NoOlderPromiseOutlivesProbesThatBreakOff) {
-  const CacheFolder folder;
   Asked ask;
   const std::string file = ask(device()).file;
   keep_verdict(device(), {probe("A2", true), kBrokenOff}, 5);
@@ -248,7 +239,6 @@ TEST(DeviceVerdict, NoOlderPromiseOutlivesProbesThatBreakOff) {
 }
 
 TEST(DeviceVerdict, AFailureIsKeptThoughAnotherProbeBrokeOff) {
-  const CacheFolder folder;
   Asked ask;
   ask(device());
   const DeviceVerdict now = keep_verdict(device(), {kBrokenOff, probe("A2", false)}, 5);
@@ -263,7 +253,6 @@ TEST(DeviceVerdict, AFailureIsKeptThoughAnotherProbeBrokeOff) {
 
 TEST(DeviceVerdict, NoOlderPromiseOutlivesAFailureThatCannotBeWritten) {
   for (const bool pass : {false, true}) {
-    const CacheFolder folder;
     Asked ask;
     ask(device());
     DeviceVerdict full;

@@ -11,7 +11,6 @@
 // nothing but triangles with boxes too far apart.
 #pragma once
 
-#include "core/proximity/near_pairs.h"
 #include "tests/lab/distances.h"
 
 namespace farcull::distance_truth {

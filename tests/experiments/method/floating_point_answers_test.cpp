@@ -1,8 +1,5 @@
 // Answers in every floating-point environment that a caller may have, from all that decides,
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
-#include <nlohmann/json.hpp>
-
-#include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "tests/lab/flat.h"
@@ -26,16 +23,12 @@ struct Sample {
   std::size_t colliding;
 };
 
-std::vector<Sample> samples() {
-  return {{"tiny", lab::tiny_scene(kCopies), kPairs},
-          {"huge", lab::huge_scene(kCopies), kPairs},
-          {"subnormal", lab::subnormal_scene(kCopies), 0}};
-}
-
 // test(environment, sample) for each, with what it says about the failure.
 template <class Test>
 void for_all(const Test& test) {
-  for (const Sample& sample : samples()) {
+  for (const Sample& sample : {Sample{"tiny", lab::tiny_scene(kCopies), kPairs},
+                               Sample{"huge", lab::huge_scene(kCopies), kPairs},
+                               Sample{"subnormal", lab::subnormal_scene(kCopies), 0}}) {
     for (const Environment& environment : environments()) {
       SCOPED_TRACE(sample.name + " in the environment: " + environment.name);
       test(environment, sample);

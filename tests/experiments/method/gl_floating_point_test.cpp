@@ -1,6 +1,5 @@
 // What draws, in every floating-point environment that a caller may have; and drivers that change
 // it.
-#include "core/gl/base/context.h"
 #include "experiments/method/run.h"
 #include "tests/lab/floating_point.h"
 

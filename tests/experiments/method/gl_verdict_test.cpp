@@ -1,8 +1,5 @@
 // What a run promises on a device: what the verdict about it allows. Twins: the same
 // run where a probe has failed.
-#include <nlohmann/json.hpp>
-
-#include "core/gl/probe/probe.h"
 #include "experiments/method/device_verdict.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"

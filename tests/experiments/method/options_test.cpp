@@ -1,9 +1,6 @@
 // The table of options: every row can be read, refused and written, whoever adds one.
 #include "experiments/method/options.h"
 
-#include <nlohmann/json.hpp>
-
-#include "core/view/view.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/test.h"

@@ -5,8 +5,6 @@
 
 #include <rapidcheck/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "experiments/measure/compare.h"
 #include "tests/lab/plan.h"
 #include "tests/lab/runs.h"
@@ -75,7 +73,8 @@ TEST(PackagedScenes, FarDrawsWhereverBoxesOfObjectsOverlap) { expect_drawn(true)
 
 TEST(Planner, ABroadPhaseOfTrianglesLeavesLessToDraw) {
   const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions far{.method = Method::far, .device = "native"};
+  // Shortcuts end a run after a view that culls little, which differs for the two.
+  RunOptions far{.method = Method::far, .no_shortcuts = true, .device = "native"};
   const Record exact = run(scene, {.method = Method::exact});
   const Record published = run(scene, far);
   far.broad_phase = BroadPhase::triangles;
@@ -157,11 +156,9 @@ TEST(Planner, SaysWhatItLeavesOut) {
   EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
   EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
-  EXPECT_EQ(decision(plan(scene, far), "object level"), "left out") << "of two objects";
   EXPECT_EQ(decision(plan(scene, far), "cull triangles x, round 1"), "runs");
   const Scene crowd = make_builtin_scene("crowd");
-  EXPECT_EQ(decision(plan(crowd, far), "cull objects x, round 1"), "runs");
-  EXPECT_EQ(decision(plan(crowd, far), "cull triangles x, round 1"), "depends");
+  EXPECT_EQ(decision(plan(crowd, far), "object level"), "left out") << "triangles are asked anyway";
   EXPECT_EQ(decision(plan(scene, far), "fatten y, round 1"), "depends");
   far.offset = "exact";
   EXPECT_EQ(decision(plan(scene, far), "offset exact"), "depends");
@@ -174,6 +171,8 @@ TEST(Planner, SaysWhatItLeavesOut) {
             "if any triangle is left");
   far.full = true;
   EXPECT_EQ(decision(plan(scene, far), "fatten y, round 1"), "runs");
+  far.method = Method::far;
+  EXPECT_EQ(decision(plan(crowd, far), "cull objects x, round 1"), "runs");
 }
 
 TEST(Planner, IsTheSameTwiceAndNamesEveryStageInJson) {

@@ -1,12 +1,9 @@
 // The method boxes as farcull run has it.
-#include <nlohmann/json.hpp>
-
 #include "experiments/measure/compare.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/pairs.h"
 #include "tests/lab/runs.h"
-#include "verify/accounting.h"
 
 namespace farcull {
 namespace {

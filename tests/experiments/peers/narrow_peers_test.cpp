@@ -2,9 +2,7 @@
 
 #include "experiments/measure/harness.h"
 #include "experiments/peers/peer.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/scenes.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -48,13 +46,10 @@ TEST_F(NarrowPeers, AreRightWhereNothingIsClose) {
 
 // A triangle in the plane 4 (x - 1024) = 3 z, and one that reaches it from smaller x with the
 // corner (1024.75 + x, 0, 1 + z). Floats are 2^-13 apart there, so that any |x| < 2^-14 is lost.
-Scene close_pair(double x, double z) {
-  return scene_of({{{{{1024, -5, 0}, {1027, -5, 4}, {1024, 5, 0}}}},
-                   {{{{1024.75 + x, 0, 1 + z}, {1020, -1, 2}, {1020, 1, 2}}}}});
-}
-
 TEST_F(NarrowPeers, FloatMissesWhatItsRoundingTakesApart) {
-  const Scene scene = close_pair(0x1p-15, 0x1p-17);
+  const Scene scene =
+      scene_of({{{{{1024, -5, 0}, {1027, -5, 4}, {1024, 5, 0}}}},
+                {{{{1024.75 + 0x1p-15, 0, 1 + 0x1p-17}, {1020, -1, 2}, {1020, 1, 2}}}}});
   ASSERT_EQ(truth_of(scene).size(), 1u);
   EXPECT_EQ(found("fcl-double", scene), truth_of(scene));
   EXPECT_TRUE(found("fcl-float", scene).empty());
@@ -107,16 +102,13 @@ TEST_F(NarrowPeers, EndOnDegenerateTrianglesAndWhatOnlyFloatsMakeDegenerate) {
   }
 }
 
-Peer ode_trimesh() {
-  const std::vector<Peer> peers = narrow_peers();
-  return *std::ranges::find(peers, "ode-trimesh", &Peer::name);
-}
-
 class OdeTrimesh : public NarrowPeers {
  protected:
   void SetUp() override {
-    const Peer peer = ode_trimesh();
-    if (!peer.missing.empty()) GTEST_SKIP() << peer.missing;
+    const std::vector<Peer> peers = narrow_peers();
+    const auto peer = std::ranges::find(peers, "ode-trimesh", &Peer::name);
+    ASSERT_NE(peer, peers.end());
+    if (!peer->missing.empty()) GTEST_SKIP() << peer->missing;
   }
   static std::vector<TrianglePair> found(const Scene& scene) {
     return NarrowPeers::found("ode-trimesh", scene);

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command/command.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/picture/png_read.h"
 #include "tests/lab/gl.h"
 

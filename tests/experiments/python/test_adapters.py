@@ -150,19 +150,14 @@ def test_the_broad_phase_has_all_candidates_of_brute_force(monkeypatch):
     # Boxes are grown by a rounding, so that a few more may touch.
     assert missed == 0 and more < right / 50 and right > 1000, (missed, more, right)
     # Twins: diagonals that are looked for nearer by, boxes that are not swept, neighbours of one object.
-    with monkeypatch.context() as wrong:
-        wrong.setattr(broad_phase, "reach", lambda boxes: 0.0)
-        assert missed_and_more()[0] > 0
-    with monkeypatch.context() as wrong:
-        build = BroadPhase.build
-        wrong.setattr(BroadPhase, "build", lambda broad, V0, V1, *more: build(broad, V0, V0, *more))
-        assert missed_and_more()[0] > 0
-    with monkeypatch.context() as wrong:
-        collide = farcull.collide
+    build, collide = BroadPhase.build, farcull.collide
 
-        def as_one_object(V, F, starts, **options):
-            a, b = collide(V, F, self=True, **options).pairs.T
-            return types.SimpleNamespace(pairs=np.stack([a, b], 1)[(a < starts[1]) & (b >= starts[1])])
+    def as_one_object(V, F, starts, **options):
+        a, b = collide(V, F, self=True, **options).pairs.T
+        return types.SimpleNamespace(pairs=np.stack([a, b], 1)[(a < starts[1]) & (b >= starts[1])])
 
-        wrong.setattr(farcull, "collide", as_one_object)
-        assert missed_and_more()[0] > 0
+    for owner, name, wrong in ((broad_phase, "reach", lambda boxes: 0.0), (farcull, "collide", as_one_object),
+                               (BroadPhase, "build", lambda broad, V0, V1, *more: build(broad, V0, V0, *more))):
+        with monkeypatch.context() as twin:
+            twin.setattr(owner, name, wrong)
+            assert missed_and_more()[0] > 0, name

@@ -5,13 +5,12 @@ import json
 import math
 import os
 import pickle
-import subprocess
 import types
 
 import farcull
 import numpy as np
 import pytest
-from lab import PROGRAM, error_of, refused, same_pairs
+from lab import asked, error_of, refused, same_pairs
 
 V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1], [9, 9, 9]], float)
 F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
@@ -186,8 +185,7 @@ def test_what_the_package_shows_of_itself():
     result = farcull.collide(V, F, OBJECTS)
     assert repr(result) == "<farcull.Result: 1 pair, 0 of neighbours>" and len(result.pairs) == 1
     assert {name for name in dir(farcull) if name[0] != "_"} == set(farcull.__all__)
-    said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
-    assert said.startswith(f"farcull {farcull.__version__}, ")
+    assert asked("--version").startswith(f"farcull {farcull.__version__}, ")
     for call in (farcull.collide, farcull.distances, farcull.Collider.find, farcull.clash, farcull.show):
         for name in inspect.signature(call).parameters:
             assert name == "self" or name in call.__doc__, (call, name)

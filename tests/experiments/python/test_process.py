@@ -213,17 +213,12 @@ def test_threads_of_llvmpipe_are_named(threads):
     assert egl.eglCreateContext(display, None, None, None)
     del os.environ["LP_NUM_THREADS"]
     """
-    out = python(
-        earlier
-        + """
+    out = python(earlier + """
     import farcull
     assert os.environ["LP_NUM_THREADS"] == "0"
     device = farcull.Scene("two-spheres").run("cullide", resolution=64, device="software").json()["device"]
     print(device["renderer"], device["threads"], sep="|")
-    """,
-        # With the verdicts and the compiled shaders that other tests keep.
-        env={**os.environ, "XDG_CACHE_HOME": os.path.dirname(os.environ["FARCULL_PROGRAM"]) + "/test-cache"},
-    )
+    """, env={**os.environ, "XDG_CACHE_HOME": os.path.dirname(os.environ["FARCULL_PROGRAM"]) + "/test-cache"})  # as other tests
     device, found = out.strip().split("|")
     if "llvmpipe" not in device:
         pytest.skip(f"the device is {device}")

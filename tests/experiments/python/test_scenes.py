@@ -3,19 +3,13 @@
 import csv
 import io
 import json
-import subprocess
 
 import farcull
 import numpy as np
 import pytest
-from lab import PROGRAM, error_of, refused, same_pairs
+from lab import asked, error_of, or_skip, refused, same_pairs
 
 METHODS = ["far", "cullide", "quick-cullide", "i-collide", "boxes", "exact"]
-
-
-def program(*arguments):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
-    return done.stdout, done.stderr
 
 
 def listed(record):
@@ -29,16 +23,12 @@ def listed(record):
 
 
 def of_program(*arguments):
-    out, err = program("run", *arguments, "--no-verify", "--pairs", "-")
-    assert out, err
-    rows = list(csv.reader(io.StringIO(out)))[1:]
+    rows = list(csv.reader(io.StringIO(asked("run", *arguments, "--no-verify", "--pairs", "-"))))[1:]
     return np.array([[int(cell) for cell in row[:4]] for row in rows], np.int64).reshape(-1, 4)
 
 
 # Those of millions of triangles are for the program's own tests.
-@pytest.mark.parametrize(
-    "name", [n for n in farcull.builtin_scenes() if n not in ("bunny-dragon", "breaking-dragon")]
-)
+@pytest.mark.parametrize("name", [n for n in farcull.builtin_scenes() if n not in ("bunny-dragon", "breaking-dragon")])
 def test_every_built_in_scene_answers_as_the_program(name):
     try:
         scene = farcull.Scene(name)
@@ -90,9 +80,8 @@ def test_views_of_a_scene_are_read_only_and_keep_it():
 
 
 def test_scenes_of_files(tmp_path):
-    path = tmp_path / "one.off"
+    path, other = tmp_path / "one.off", tmp_path / "two.off"
     path.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
-    other = tmp_path / "two.off"
     other.write_text("OFF\n3 1 0\n0 0 -1\n0 0 1\n1 1 1\n3 0 1 2\n")
     scene = farcull.Scene(path, str(other))
     assert scene.names == ["one", "two"] and scene.run().pairs.tolist() == [[0, 1]]
@@ -162,7 +151,7 @@ def test_certificates_are_those_of_the_program(tmp_path):
     scene = farcull.Scene("two-tori")
     record = scene.run(verify=False)
     path = tmp_path / "c.json"
-    program("run", "two-tori", "--no-verify", "--certificate", str(path))
+    asked("run", "two-tori", "--no-verify", "--certificate", path)
     ours, theirs = json.loads(record.certificate()), json.loads(path.read_text())
     assert ours["evidence"] == theirs["evidence"] and ours["claims"] == theirs["claims"]
     checked = farcull.check(scene, record.certificate())
@@ -204,13 +193,7 @@ def test_frames():
 
 def test_pictures():
     scene = farcull.Scene("two-tori")
-    try:
-        drawn = farcull.picture(scene, ["cullide", {"method": "far", "resolution": 64}], width=96,
-                                height=80)
-    except farcull.InputError:
-        raise
-    except farcull.Error as error:
-        pytest.skip(f"no OpenGL here: {error}")
+    drawn = or_skip(farcull.picture, scene, ["cullide", {"method": "far", "resolution": 64}], width=96, height=80)
     assert drawn.pixels.dtype == np.uint8 and drawn.pixels.ndim == 3
     assert drawn.pixels.shape[1] > 2 * 96 and len(np.unique(drawn.pixels.reshape(-1, 4), axis=0)) > 9
     assert [panel["colliding"] for panel in drawn.panels] == [282, 282]

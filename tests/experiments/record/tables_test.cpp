@@ -3,8 +3,6 @@
 #include "experiments/record/tables.h"
 #include "experiments/record/stage_words.h"
 
-#include <nlohmann/json.hpp>
-
 #include "experiments/record/output.h"
 #include "experiments/system/text_table.h"
 #include "tests/lab/scenes.h"

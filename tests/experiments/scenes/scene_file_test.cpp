@@ -1,6 +1,5 @@
 #include "experiments/scenes/scene_file.h"
 
-#include "experiments/scenes/mesh/scene_build.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

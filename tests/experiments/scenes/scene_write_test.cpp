@@ -1,7 +1,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "tests/lab/moving.h"
 

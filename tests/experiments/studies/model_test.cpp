@@ -3,14 +3,8 @@
 // resolution.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "experiments/method/miss_model.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {

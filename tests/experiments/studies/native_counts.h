@@ -19,10 +19,7 @@
 #include <sstream>
 
 #include "core/base/bytes.h"
-#include "core/base/error.h"
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
-#include "experiments/studies/study.h"
 #include "tests/lab/points.h"
 
 namespace farcull::native_counts {

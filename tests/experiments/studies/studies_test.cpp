@@ -1,11 +1,8 @@
 // What every study promises of its grid.
 #include "experiments/record/stage_words.h"
-#include "experiments/studies/study.h"
 
-#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_point.h"
 #include "tests/lab/test.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -139,11 +136,6 @@ TEST(RunPoint, DoesNotDependOnEarlierRunsOfTheSession) {
   EXPECT_EQ(first.device, later.device);
 }
 
-// Whether the lists of i-collide are those of a run just before.
-bool is_warm(MeasurementContext& lab) {
-  return lab.session().sweep().find(lab.current()).counts.sorts == 0;
-}
-
 TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
   MeasurementContext lab("cpu");
   const auto stages_of = [&](const RunPoint& point) {
@@ -156,7 +148,8 @@ TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
   const RunPoint still = plain_point(NamedScene{"crowd"}, Method::i_collide);
   const std::string cold = stages_of(still);
   EXPECT_EQ(stages_of(still), cold);
-  EXPECT_TRUE(is_warm(lab)) << "else nothing is there to be forgotten";
+  // The lists are those of the run just before, else nothing is there to be forgotten.
+  EXPECT_EQ(lab.session().sweep().find(lab.current()).counts.sorts, 0u);
   EXPECT_EQ(stages_of(still), cold);
   // The twin: a point of a motion keeps the lists.
   RunPoint moving = still;
@@ -205,7 +198,8 @@ TEST(ContactCells, AreFoundByTheBudgetAndAsManyLostBySmallerBallsAtEveryValue) {
       EXPECT_EQ(far.missed, 0u);
       EXPECT_GT(far.views_used, 0u);
       EXPECT_EQ(far.left_by_boxes, far.triangles) << "boxes of objects cull nothing here";
-      EXPECT_LE(10 * far.kept_triangles, 7 * far.triangles) << "at least 30 % are culled";
+      // A run ends after a view that culls less than a third.
+      EXPECT_LE(10 * far.kept_triangles, 8 * far.triangles) << "at least 20 % are culled";
       EXPECT_EQ(far.at_risk, kAtRisk + corners);
       EXPECT_GE(far.at_risk_bare.value_or(0), kAtRisk + corners);
       RunPoint smaller = point;

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 import unittest
+from pathlib import Path
 from unittest import mock
 
 program, contestants = (os.path.realpath(path) for path in sys.argv[1:3])
@@ -111,6 +112,11 @@ def write(path, text):
         file.write(text)
 
 
+def table(path):
+    with open(path, encoding='utf-8') as file:
+        return [*csv.DictReader(file)]
+
+
 def write_suite(folder, files):
     text = 'farcull-suite 1\nseed 1\nsize small\nlicence CC0-1.0\n'
     for path, content in sorted(files.items()):
@@ -132,8 +138,7 @@ def run(*words, status=0, limit=100):
 def ask(command, *options):
     """The rows that ask.py counts, by question and family."""
     run('python3', 'suite/ask.py', '--csv', 'rows.csv', *options, command)
-    with open('rows.csv', encoding='utf-8') as file:
-        return {(row['question'], row['family']): row for row in csv.DictReader(file)}
+    return {(row['question'], row['family']): row for row in table('rows.csv')}
 
 
 def faulty(fault, *options):
@@ -157,18 +162,19 @@ class Ask(unittest.TestCase):
                      'refused', 'unanswered', 'crashed', 'hung', 'no memory', 'not asked', 'differs'):
             self.assertEqual(int(row[name]), counts.get(name.replace(' ', '_'), 0), (name, row))
 
-    def test_the_right_one_has_no_fault(self):
-        row = faulty('none')
-        self.expect(row)
-        self.assertEqual(row['asked'], str(PAIRS))
-
-    def test_one_that_is_late_hung_there(self):
-        self.expect(faulty('late', '--limit', '0.3'), hung=1)
-
-    def test_one_that_dies_crashed_there_and_the_rest_is_asked(self):
-        row = faulty('dies')
-        self.expect(row, crashed=1)
-        self.assertEqual((row['asked'], row['reason']), (str(PAIRS), 'SIGSEGV'))
+    def test_each_fault_is_counted_and_all_is_asked(self):
+        half = PAIRS // 2
+        for fault, options, counts in (
+                ('none', (), {}), ('late', ('--limit', '0.3'), {'hung': 1}), ('dies', (), {'crashed': 1}),
+                ('leaves-out', (), {'unanswered': 1}), ('ends', (), {'unanswered': 1}),
+                ('takes', ('--memory', '300'), {'no_memory': 1}),
+                ('leaks', ('--memory', '300'), {}),  # no fault of the question at which memory ends
+                ('yes', (), {'wrong': half, 'own_wrong': half}), ('no', (), {'missed': half, 'own_missed': half})):
+            with self.subTest(fault):
+                row = faulty(fault, *options)
+                self.expect(row, **counts)
+                self.assertEqual(row['asked'], str(PAIRS))
+        self.assertEqual(faulty('dies')['reason'], 'SIGSEGV')
 
     def test_nonsense_is_a_crash_with_its_words(self):
         for fault, words in ('nonsense', 'perhaps'), ('longer', '0 1 1'), ('twice', ''), ('number', '0_9'), ('cut', '9 0'):
@@ -185,24 +191,10 @@ class Ask(unittest.TestCase):
                 with self.assertRaises(ValueError, msg=text):
                     module.number(text, kind)
 
-    def test_an_answer_that_is_left_out_or_not_given_is_unanswered(self):
-        self.expect(faulty('leaves-out'), unanswered=1)
-        self.expect(faulty('ends'), unanswered=1)
-
-    def test_one_that_takes_all_memory_is_named(self):
-        self.expect(faulty('takes', '--memory', '300'), no_memory=1)
-
-    def test_always_yes_is_wrong_at_half_and_always_no_misses_half(self):
-        self.expect(faulty('yes'), wrong=PAIRS // 2, own_wrong=PAIRS // 2)
-        self.expect(faulty('no'), missed=PAIRS // 2, own_missed=PAIRS // 2)
-
     def test_a_refusal_is_honest(self):
         rows = ask('python3 faulty.py none', '--only', 'self,inside,clash')
         self.expect(rows['inside', 'cubes'], refused=2)
         self.expect(rows['clash', 'cubes'], refused=1)
-
-    def test_a_leak_is_no_fault_of_the_question_at_which_memory_ends(self):
-        self.expect(faulty('leaks', '--memory', '300'))
 
     def test_another_answer_in_another_process_is_counted(self):
         row = faulty('differs')
@@ -211,8 +203,7 @@ class Ask(unittest.TestCase):
     def test_a_command_that_does_not_start_and_a_changed_suite_are_errors(self):
         self.assertIn('/no/such/program', run('python3', 'suite/ask.py', '/no/such/program', status=2))
         shutil.copytree('suite', 'changed')
-        with open('changed/pairs/few.txt', 'a', encoding='utf-8') as file:
-            file.write('# more\n')
+        write('changed/pairs/few.txt', make_suite('')['pairs/few.txt'] + '# more\n')
         self.assertIn('SHA-256', run('python3', 'changed/ask.py', 'python3 separate.py', status=2))
 
     def test_the_examples_answer_from_a_folder_without_farcull(self):
@@ -333,8 +324,8 @@ class Ask(unittest.TestCase):
                 time.sleep(0.01)
             asks.send_signal(signal.SIGINT)
             self.assertEqual(asks.wait(10), 130)
-        with open('stops', encoding='utf-8') as file, self.assertRaises(ProcessLookupError):
-            os.kill(int(file.read()), 0)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(Path('stops').read_text()), 0)
 
     def test_a_card_has_known_words(self):
         def asked(key, value, status):
@@ -351,10 +342,10 @@ class Ask(unittest.TestCase):
 
     def test_pairs_of_a_mesh_are_missed_and_wrong(self):
         def row(*pairs):
-            write('mesh.py', f'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+            write('mesh.py', 'import sys\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
                   '  if question == "card":\n    print(number, "refused", "x", sep="\\t", flush=True)\n    continue\n'
-                  f'  for row in {pairs}:\n'
-                  '    print(number, "pair", *row, sep="\\t")\n  print(number, "done", sep="\\t", flush=True)\n')
+                  f'  for row in {pairs}: print(number, "pair", *row, sep="\\t")\n'
+                  '  print(number, "done", sep="\\t", flush=True)\n')
             return ask('python3 mesh.py', '--only', 'mesh')['mesh', 'cross']
         self.expect(row((0, 0, 1, 0)))
         self.expect(row((1, 0, 0, 0), (0, 0, 0, 1)))  # neighbours count only if the card says so
@@ -389,11 +380,10 @@ class Study(unittest.TestCase):
             'pairs.csv': 'object_a,triangle_a,object_b,triangle_b,shared\n0,0,1,0,0\n'}.items()}
         write_suite('motion', frames)
         os.makedirs('forgets', exist_ok=True)
-        with open('forgets/farcull_contestant_gts', 'w', encoding='utf-8') as file:  # right in the first frame alone
-            file.write('#!/usr/bin/env python3\nimport sys\nasked = 0\nfor line in sys.stdin:\n'
-                       '  number, question, *_ = line.split()\n'
-                       '  if question == "mesh" and asked == 0: print(number, "pair", 0, 0, 1, 0, sep="\\t")\n'
-                       '  asked += question == "mesh"\n  print(number, "done", sep="\\t", flush=True)\n')
+        write('forgets/farcull_contestant_gts',  # right in the first frame alone
+              '#!/usr/bin/env python3\nimport sys\nasked = 0\nfor line in sys.stdin:\n  number, question, *_ = line.split()\n'
+              '  if question == "mesh" and asked == 0: print(number, "pair", 0, 0, 1, 0, sep="\\t")\n'
+              '  asked += question == "mesh"\n  print(number, "done", sep="\\t", flush=True)\n')
         os.chmod('forgets/farcull_contestant_gts', 0o755)
         with mock.patch.dict(os.environ, FARCULL_CONTESTANTS=work + '/forgets'):
             counts = study('moved', '--suite', 'motion', '--contestants', 'gts')['gts', 'mesh']
@@ -404,8 +394,7 @@ class Study(unittest.TestCase):
         """An adapter that names others misses nearly all pairs, a library that rounds at most a few."""
         write_suite('soup', {'pairs/few.txt': make_suite('')['pairs/few.txt'], **soup('meshes/soup-1')})
         counts = study('adapters', '--suite', 'soup')
-        with open(root + '/experiments/report/chapters/libraries.csv', encoding='utf-8') as file:
-            documented = {row['contestant']: row for row in csv.DictReader(file)}
+        documented = {row['contestant']: row for row in table(root + '/experiments/report/chapters/libraries.csv')}
         self.assertGreater(len({name for name, _ in counts}), 9)
         for (name, kind), row in counts.items():
             ours = row['library'] == 'farcull'
@@ -421,17 +410,10 @@ class Study(unittest.TestCase):
                 self.assertEqual(row['missed'] + row['wrong'] if ours else 0, 0)
 
 
-CASES = root + '/tests/cases/'
-
-
 def examples():
     """The suite of the smallest pairs and distances at which libraries err; and what stands before each pair."""
-    files = {}
-    for folder, name in ('pairs', 'libraries'), ('questions', 'questions'):
-        with open(f'{CASES}{name}.txt', encoding='utf-8') as file:
-            files[f'{folder}/{name}.txt'] = file.read()
-    with open(CASES + 'cube.obj', encoding='utf-8') as file:
-        files['cube.obj'] = file.read()
+    cases = {'pairs/libraries.txt': 'libraries.txt', 'questions/questions.txt': 'questions.txt', 'cube.obj': 'cube.obj'}
+    files = {path: Path(root, 'tests/cases', name).read_text('utf-8') for path, name in cases.items()}
     write_suite('examples', files)
     shutil.copy('suite/ask.py', 'examples/ask.py')
     lines = files['pairs/libraries.txt'].split('\n')
@@ -446,8 +428,7 @@ class Examples(unittest.TestCase):
             command = f'{contestants}/farcull_contestant_ours {method}'
             run('python3', 'examples/ask.py', '--csv', 'examples.csv', '--only', 'pair,distance,inside', *options, command,
                 limit=500)
-            with open('examples.csv', encoding='utf-8') as file:
-                rows = [*csv.DictReader(file)]
+            rows = table('examples.csv')
             self.assertEqual(rows[0]['asked'], str(len(known)), method)
             for row in rows:
                 Ask.expect(self, row)

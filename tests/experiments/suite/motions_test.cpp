@@ -1,7 +1,6 @@
 // Motions and loads of the suite, and our own answers about them.
 #include <fmt/format.h>
 
-#include "experiments/generators/pair_generators.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/writer.h"
 #include "tests/lab/flat.h"
@@ -48,19 +47,14 @@ std::vector<SuiteMesh> meshes_of(const std::set<std::string>& families) {
   return out;
 }
 
-void expect_right(Session& session, const SuiteMesh& mesh) {
-  for (const Method method : {Method::far, Method::boxes, Method::exact}) {
-    EXPECT_EQ(pairs_by(method, session, mesh.scene), listed(mesh))
-        << to_string(method) << ", " << mesh.name;
-  }
-}
-
 TEST(Loads, AreFoundWithAllTheContactsThatTheyPromise) {
   Session session("native", 1, {});
   std::size_t most = 0;
   for (const SuiteMesh& mesh : meshes_of({"bars", "hub"})) {
     EXPECT_EQ(static_cast<double>(mesh.pairs.size()), mesh.parameter) << mesh.name;
-    expect_right(session, mesh);
+    for (const Method method : {Method::far, Method::boxes, Method::exact})
+      EXPECT_EQ(pairs_by(method, session, mesh.scene), listed(mesh))
+          << to_string(method) << ", " << mesh.name;
     most = std::max(most, mesh.pairs.size());
   }
   EXPECT_GT(most, 65535u);  // what 16 bits can count

@@ -3,7 +3,6 @@
 
 #include "experiments/method/run.h"
 #include "tests/lab/flat.h"
-#include "verify/contact.h"
 
 namespace farcull {
 namespace {
@@ -80,16 +79,6 @@ Scene scene_of(const SuitePair& pair) {
   return scene;
 }
 
-bool found_by_library(Collider& collider, const Scene& scene) {
-  const Result result = collider.find(Flat(scene).input());
-  return result.pairs.size() + result.neighbour_pairs.size() > 0;
-}
-
-std::string environment(const char* name, const char* usual) {
-  const char* const value = std::getenv(name);
-  return value != nullptr ? value : usual;
-}
-
 TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
   Collider two_objects({.threads = 1});
   Collider one_object({.threads = 1, .self = true});
@@ -97,13 +86,17 @@ TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
     const SuitePairs pairs = make_pairs(family.name, {});
     for (const SuitePair& pair : pairs.pairs) {
       Collider& collider = pair.shared.empty() ? two_objects : one_object;
-      EXPECT_EQ(found_by_library(collider, scene_of(pair)), collides(pair.kind))
+      const Result result = collider.find(Flat(scene_of(pair)).input());
+      EXPECT_EQ(result.pairs.size() + result.neighbour_pairs.size() > 0, collides(pair.kind))
           << family.name << " " << pair.id << ", " << to_string(pair.kind);
     }
   }
 }
 
-std::string asked_device() { return environment("FARCULL_SUITE_DEVICE", "native"); }
+std::string asked_device() {
+  const char* const value = std::getenv("FARCULL_SUITE_DEVICE");
+  return value != nullptr ? value : "native";
+}
 
 /// Whether the method reports the pair; everything is left in, so that it is drawn.
 bool found_by(Method method, Session& session, const Scene& scene) {

@@ -1,11 +1,6 @@
 // What is merged is the list of one run; whatever is missing, doubled, foreign or cut short is
 // refused, and then no file is written.
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
-#include "core/base/bytes.h"
 #include "experiments/tiles/run_tile.h"
 #include "tests/lab/test.h"
 

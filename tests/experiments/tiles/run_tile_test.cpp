@@ -1,9 +1,6 @@
 // The lists of all tiles together are the list of one run, byte for byte.
 #include "experiments/tiles/run_tile.h"
 
-#include <nlohmann/json.hpp>
-
-#include "core/base/random.h"
 #include "tests/lab/test.h"
 
 namespace farcull {

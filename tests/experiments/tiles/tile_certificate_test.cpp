@@ -1,6 +1,5 @@
 // Certificates of tiles: each proves the pairs of its tile, and together they are about each pair
 // of the scene once.
-#include "experiments/record/output.h"
 #include "experiments/tiles/run_tile.h"
 #include "tests/lab/certificates.h"
 

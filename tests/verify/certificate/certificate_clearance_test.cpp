@@ -2,9 +2,7 @@
 // counts, and one unit in the last place more or less does not go unseen.
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/certificates.h"
-#include "tests/lab/drawn_pairs.h"
 #include "tests/lab/hard_pairs.h"
-#include "tests/lab/reference.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {

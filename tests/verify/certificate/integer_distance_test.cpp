@@ -1,7 +1,6 @@
 // Exact distances in integers agree with brute force in rationals, and so do their features; the 38
 // directions prove just what is as far.
 #include "verify/certificate/integer_distance.h"
-#include "tests/lab/drawn_pairs.h"
 
 #include "experiments/method/distances.h"
 #include "tests/lab/grid_distance.h"

@@ -7,7 +7,6 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/reference.h"
 #include "tests/lab/test.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {

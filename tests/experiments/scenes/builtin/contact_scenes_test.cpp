@@ -16,18 +16,13 @@ Scene of(Make make, std::uint64_t size, std::uint64_t seed) {
   return make({.size = size}, seed).scene;
 }
 
-std::array<double, 3> sides(const Scene& scene, std::uint32_t triangle) {
-  const auto [a, b, c] = scene.corners(triangle);
-  std::array<double, 3> out = {(b - a).norm(), (c - b).norm(), (a - c).norm()};
-  std::ranges::sort(out);
-  return out;
+double longest_side(const std::array<Vec3, 3>& t) {
+  return std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
 }
 
 // Height over the longest side.
-double thickness(const Scene& scene, std::uint32_t triangle) {
-  const auto [a, b, c] = scene.corners(triangle);
-  const double longest = sides(scene, triangle)[2];
-  return (b - a).cross(c - a).norm() / (longest * longest);
+double thickness(const std::array<Vec3, 3>& t) {
+  return (t[1] - t[0]).cross(t[2] - t[0]).norm() / (longest_side(t) * longest_side(t));
 }
 
 TEST(ContactScenes, HaveTheSizeOfTheirNameAndFollowTheirSeed) {
@@ -49,17 +44,13 @@ TEST(ContactScenes, HaveTheSizeOfTheirNameAndFollowTheirSeed) {
       EXPECT_NE(scene_hash(scene), scene_hash(of(make, size, 1)));
       double thinnest = 1;
       for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
-        thinnest = std::min(thinnest, thickness(scene, t));
+        thinnest = std::min(thinnest, thickness(scene.corners(t)));
       EXPECT_GT(thinnest, 1e-6) << "degenerate";
     }
   }
 }
 
 // ---- The scenes that go to an extreme by a number are what their number says, measured.
-
-double longest_side(const std::array<Vec3, 3>& t) {
-  return std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
-}
 
 // Where the coordinates are below 2, the nearest doubles to a triangle are within 2^-53 in each,
 // and an operation or two before them may double that: its height is within 8 * 2^-52 of what was

@@ -4,7 +4,6 @@
 
 #include "experiments/measure/frames.h"
 #include "tests/lab/moving.h"
-#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -12,11 +11,6 @@ namespace {
 using lab::kFrames;
 
 const BuiltinScene& entry_of(const std::string& name) { return *parse_scene_name(name).entry; }
-
-bool same_topology(const Scene& a, const Scene& b) {
-  return a.triangles == b.triangles && a.vertices.size() == b.vertices.size() &&
-         a.objects.size() == b.objects.size();
-}
 
 // The scene moves in place, in the same memory where that is promised, and a frame does not depend
 // on those before it.
@@ -33,7 +27,9 @@ void expect_motion(const std::string& name) {
     const auto* const triangles = scene.triangles.data();
     EXPECT_EQ(&moving.at(first + frame), &scene);
     EXPECT_EQ(scene.name, name);
-    if (frame > 0 && !same_topology(frames.back(), scene)) {
+    if (frame > 0 && (frames.back().triangles != scene.triangles ||
+                      frames.back().vertices.size() != scene.vertices.size() ||
+                      frames.back().objects.size() != scene.objects.size())) {
       changes = true;
     } else {
       EXPECT_EQ(scene.vertices.data(), vertices);

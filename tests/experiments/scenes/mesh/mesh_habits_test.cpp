@@ -1,7 +1,6 @@
 // Files as people have them: forms that programs write although the formats do not quite say so,
 // and corners that differ in the last digits.
 #include "experiments/scenes/mesh/load.h"
-#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/lab/meshes.h"
 #include "verify/exact.h"
