@@ -74,7 +74,7 @@ TEST(PackagedScenes, FarDrawsWhereverBoxesOfObjectsOverlap) { expect_drawn(true)
 TEST(Planner, ABroadPhaseOfTrianglesLeavesLessToDraw) {
   const Scene scene = make_builtin_scene("two-spheres");
   // Shortcuts end a run after a view that culls little, which differs for the two.
-  RunOptions far{.method = Method::far, .no_shortcuts = true, .device = "native"};
+  RunOptions far{.method = Method::far, .device = "native", .no_shortcuts = true};
   const Record exact = run(scene, {.method = Method::exact});
   const Record published = run(scene, far);
   far.broad_phase = BroadPhase::triangles;
