@@ -86,7 +86,7 @@ struct Passing {
   double least = -HUGE_VAL;  // the least weight of the point in the face
   std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of the point on a, then on b
   int side = 0;                                                // 0: the edge is one of a; 1: of b
-  double gap = HUGE_VAL;  // distance of the points along the axes, summed
+  double gap = HUGE_VAL;                                       // L1 distance of the two points
 };
 
 /// Sets `best` to the edge of x that crosses y's plane deepest inside y, if it is deeper than

@@ -17,7 +17,7 @@ struct FilterBounds {
   static constexpr double normals = 12 * 0x1p-53;
   /// Error of the difference of two constructed points, relative to their extent.
   static constexpr double point = 64 * 0x1p-53;
-  /// Error of a gap along a direction, relative to the projected magnitudes.
+  /// Error of a gap along a direction d, relative to the largest sum of |d_k| |corner_k|.
   static constexpr double gap = 16 * 0x1p-53;
   /// Error by underflow of products, to be multiplied by 1 + the sum of their last factors.
   static constexpr double absolute = 0x1p-1000;

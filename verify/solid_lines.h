@@ -167,8 +167,8 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// Returns the chord of a point. The error bound is 2^-56 of the largest coordinates (flat: in
-  /// the image, deep: along the depth), since each of a dozen operations is off by 2^-64 of them.
+  /// Returns the chord that the sphere around a point cuts from the line. About a dozen operations
+  /// err by 2^-64 of the largest coordinate each. So 2^-56 of flat_ (image) and deep_ are bounds.
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -260,8 +260,8 @@ inline Answer answer(Kernel kernel, float cx, float cy, const Solid& solid) {
   return a;
 }
 
-/// True if the chord of the point with weights w, cut by zlo and zhi, extends beyond the answer.
-/// Nothing is rounded.
+/// True if the chord in the sphere around the point with weights w, clipped to [zlo, zhi], extends
+/// beyond the answer. Nothing is rounded.
 inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const Answer& answer) {
   const auto rational = [](Real x) {
     const double high = static_cast<double>(x);

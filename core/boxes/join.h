@@ -51,8 +51,8 @@ class OrderedPairs {
   OrderedPairs(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                std::span<const std::uint32_t> items, unsigned threads);
 
-  /// Sets `out` to about the next `most` pairs, fewer at the end. For each thread, `out` may exceed
-  /// `most` by all pairs of one item. `out` may be empty before the end. Precondition: most > 0.
+  /// Sets `out` to about the next `most` pairs, fewer at the end. Each thread finishes its last
+  /// item, so `out` may have more pairs. `out` may be empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == items_.size(); }
   /// Gives all pairs to `take`, and returns their number. Precondition: next() was not called. If

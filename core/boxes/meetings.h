@@ -26,8 +26,8 @@ struct ObjectOverlaps {
   std::vector<ObjectOverlap> all;
   std::uint64_t pairs = 0;  // number of meetings of two objects
   std::uint64_t self = 0;   // number of meetings of an object with itself
-  bool crowded = false;     // `all` is empty: more than 8 pairs of objects per block overlap, and a
-                            // list of these pairs would take more memory than the scene
+  bool crowded = false;     // `all` was left empty, since more than 8 pairs of objects overlap per
+                            // block. Their list would take more memory than the scene
 };
 /// ignored: pairs of objects that are not tested against each other; a result of in_order().
 ObjectOverlaps find_meetings(const Scene& scene, const TriangleBlocks& blocks,

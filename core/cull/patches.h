@@ -16,9 +16,9 @@ struct Patches {
   std::uint32_t size = 0;            // a patch has at most this many triangles
   std::uint32_t count = 0;           // number of patches of all marked objects
   bool cut = false;                  // some marked object has more than one patch
-  std::vector<std::uint32_t> owner;  // per triangle of the scene: its patch in an object that is
-                                     // marked `self`, else its object. Owners ascend with objects;
-                                     // no owner has triangles of two objects.
+  std::vector<std::uint32_t> owner;  // per triangle of the scene: the number of its patch if
+                                     // its object is marked `self`, else of its object. Objects
+                                     // share no owner; later objects have larger numbers.
 };
 
 /// Returns the triangles of objects that are marked `self`, ascending.

@@ -22,8 +22,8 @@ struct DrawPlan {
   CullSettings settings;            // settings without a fattener
   bool self = false;                // the method tests only triangles of one object (S-CULLIDE)
   Patches patches;                  // patches of objects that far tests against themselves
-  /// All pairs of triangles whose boxes overlap. If there are pairs to draw, patches.owner is set.
-  /// Null if only boxes of objects were compared.
+  /// All pairs of triangles whose boxes overlap; empty if only boxes of objects were compared. If
+  /// there are pairs to draw, patches.owner is set.
   std::optional<PairsToDraw> pairs = {};
 };
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-NONE = math.nan  # a gap in a line
+NONE = math.nan  # no value: a figure's line has a gap here
 FEWEST_FOR_INTERVAL = 6  # points; with fewer, Student's t is large and the interval is of little use
 
 

@@ -216,7 +216,7 @@ def page_html(page):
     front, body = ("".join(block_html(block, images) for block in part.strip("\n").split("\n\n"))
                    for part in (front_markdown(page), rest_markdown(page)))
     contents = "".join(f'<li><a href="#{name}">{title}</a></li>\n' for name, title in re.findall('<h2 id="(.*?)">(.*?)</h2>', body))
-    return (  # an empty icon, since a browser would otherwise look for one
+    return (  # The page has an empty icon, since a browser would otherwise request an icon file.
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n<title>Results of farcull</title>\n'
         f'<link rel="icon" href="data:,">\n<style>\n{STYLE}</style>\n</head>\n<body>\n{front}'

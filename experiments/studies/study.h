@@ -44,7 +44,7 @@ struct DrawnCounts {
   std::uint64_t queries = 0, draws = 0, queries_saved = 0, draws_saved = 0;
   FARCULL_FIELDS(queries, draws, queries_saved, draws_saved)
 };
-/// Radius in px and size of a pixel in units, in the view with the widest budget.
+/// The ball's radius (px) and a pixel's size (world units) in the view with the largest budget.
 struct RadiusCounts {
   double radius_px = 0, pixel_size = 0;
   FARCULL_FIELDS(radius_px, pixel_size)

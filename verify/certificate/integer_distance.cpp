@@ -24,9 +24,9 @@ namespace {
 
 constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
-/// Constructs a point on feature of_a of a and a point on feature of_b of b. If no earlier pair of
-/// features has nearest points, only these two points of the features can be nearest. Returns false
-/// if no such points exist.
+/// Constructs the only points of feature `of_a` of triangle `a` and feature `of_b` of triangle `b`
+/// that can be nearest if no earlier pair of features has nearest points. Returns false if the two
+/// features have no such points.
 bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                int of_a, int of_b) {
   if (of_a < kFirstEdge) {

@@ -112,8 +112,8 @@ bool is_nearest_double(double x, const Beside& beside) {
   return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
 }
 
-/// Two triangles in integers. A corner of the input is the first corner of a plus 2^exponent times
-/// the integers here.
+/// Two triangles in integers. Each input corner is the first corner of the input triangle `a`, plus
+/// 2^exponent times the integers stored here.
 struct ScaledPair {
   Corners<mpz_class> a, b;
   int exponent = 0;

@@ -134,8 +134,8 @@ def add_rises(chapter, tracks):
 
 
 def add_power(chapter, rows, tracks, names):
-    """Adds findings where 0 missed pairs mean little: a method with a promise culled too few triangles, or no pair was at
-    risk."""
+    """Adds a finding in each case where 0 missed pairs prove little: a method that guarantees to miss none culled too few
+    triangles, or no pair was at risk (lost with a smaller ball)."""
     for family, methods in families_of(tracks):
         little, safe = [], []
         for method, places in methods:

@@ -114,7 +114,7 @@ double smooth_force(double c, double crimp, double e);
 double smooth_stiffness(double c, double crimp, double e);
 double smooth_energy(double c, double crimp, double e);
 
-/// Returns the length at which the convex spring begins to pull, m (docs/cloth.md, l*).
+/// Returns the length (m) above which a spring pulls in the convex model (docs/cloth.md, l*).
 double slack_length(const Model& model, std::size_t spring);
 /// Returns the stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
