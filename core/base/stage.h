@@ -25,7 +25,7 @@ enum class StageKind : std::uint8_t {
   fatten,          // fattens the triangles of one view
   cull,            // runs the passes of one level in one view
   agreement,       // finds the triangles that every view of a round has cleared
-  further_views,   // represents views that are left out, since few triangles are left
+  further_views,   // represents views and rounds that are left out: little is left or was culled
   further_rounds,  // rounds after the first
   offset,          // culls again, with another fattener
   sweep,           // sweep and prune
@@ -75,7 +75,7 @@ enum class Reason : std::uint8_t {
   asked_singly,         // objects are not tested as wholes: their triangles are tested anyway
   rounds_given,         // the option `rounds` is n
   all_views,            // a triangle is culled if every view clears it
-  little_culled,        // the last view culled n of m triangles, too few for another view
+  little_culled,        // the last view (or round) culled n of m triangles, too few to go on
   owners,               // every triangle is its own owner
   clusters_given,       // the sizes of clusters are given
   clusters_large,       // clusters are used: occlusion queries on more than n triangles
@@ -99,7 +99,7 @@ enum class Reason : std::uint8_t {
   // The next five depend on pixels and occur only in plans.
   if_more_left,    // if more than n triangles are left (n = 0: any)
   if_changed,      // if the previous round changed something
-  if_culled,       // if the last view culled at least one triangle in n
+  if_culled,       // if the last view or round culled one triangle in n
   if_more_culled,  // if more than n triangles are left, and the last view culled one in m
   if_candidates,   // if candidates are left
   limited,         // in a trace: the option `limit` ended the search early

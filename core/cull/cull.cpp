@@ -75,7 +75,7 @@ std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings
   return places;
 }
 
-// Stages that do not depend on pixels: views that cannot be drawn, too few objects, and clusters.
+// Stages that do not depend on pixels: views that cannot be drawn, the object level, and clusters.
 std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings,
                                   const std::vector<ViewState>& places, std::size_t live) {
@@ -230,7 +230,8 @@ class Culling {
   void begin_visit(std::size_t view) {
     if (progress_) progress_({StageKind::cull, view_, round_});
     place_ = &places_[view];
-    if (settings_.clear == ClearRule::any) live_before_ = state_.live.size();
+    live_before_ = state_.live.size();
+    result_.views[view].drawn = true;
     Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
     stage.fattener = settings_.fattener.name;
     stage.depends = round_ > 1 || (visited_ && !settings_.full);
@@ -311,7 +312,6 @@ class Culling {
     ViewReport report{.name = name, .budget = {}};
     if (!place.window) return report;
     const Window& w = *place.window;
-    report.drawn = true;
     report.width = w.width;
     report.height = w.height;
     report.pixel_size = w.pixel_size;
@@ -474,9 +474,10 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
     const auto add = [&](Stage stage, bool depends) {
       stage.depends = depends && !settings.full;
       if (stage.depends) {
-        const bool further = !first_view && settings.worth_a_view > 0;
+        const bool any = settings.clear == ClearRule::any;
+        const bool further = !first_view && any && settings.worth_a_view > 0;
         stage.reason = further ? Reason::if_more_culled : Reason::if_more_left;
-        stage.n = first_view ? 0 : settings.enough;
+        stage.n = first_view || !any ? 0 : settings.enough;
         stage.m = further ? settings.worth_a_view : 0;
       }
       stages.push_back(std::move(stage));

@@ -367,6 +367,8 @@ class RunCommand {
     RunOptions all = options;
     all.ignored = left_out(scene);
     require_asked(scene, all.ignored);
+    // FAR then draws all views, as it does with the smaller balls of pairs_at_risk().
+    all.no_shortcuts = kind_ == Kind::verify && !no_risk_ && fattens(all.method);
     Session session(options.device);
     Record record = farcull::run(scene, all, session, progress);
     if (kind_ == Kind::verify && !no_risk_)

@@ -61,7 +61,7 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
           .full = options.full,
           .enough = thrifty ? kFewTriangles : 0,
           .object_level = !thrifty,
-          .worth_a_view = thrifty ? kWorthAView : 0};
+          .worth_a_view = thrifty && !options.objects_alone ? kWorthAView : 0};
 }
 
 Stage setup_stage(const Fattener& fattener) {
@@ -145,6 +145,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
     }
     out.triangles = std::move(result.live);
     out.bits = std::move(result.bits);
+    for (std::size_t v = 0; v < views.size(); ++v) result.views[v].drawn |= views[v].drawn;
     views = std::move(result.views);
   }
   out.by = std::move(views);
@@ -235,7 +236,7 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   }
   work.settings = settings_of(options, work.regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
-  if (is_thrifty(options) && options.views.empty() && !work.regions.triangles.empty()) {
+  if (work.settings.worth_a_view > 0 && options.views.empty()) {
     work.settings.views =
         order_views(scene, work.regions, work.patches.cut ? work.patches.owner : owners(scene),
                     std::move(work.settings.views));

@@ -221,7 +221,8 @@ const Option kOptions[] = {
     {.name = "views",
      .type = "VIEWS",
      .help = "axes or directions to look along, by commas, as in\n"
-             "x,-y,1:1:0.5, for methods that draw; default x,y,z",
+             "x,-y,1:1:0.5, for methods that draw; default x,y,z,\n"
+             "for far in the order that a sample suggests",
      .serves = drawing,
      .take = take_views,
      .words = {"x", "y", "z", "x,y,z"}},
@@ -229,7 +230,7 @@ const Option kOptions[] = {
      .type = "N",
      .help = "at most N rounds over all views, for methods that draw;\n"
              "1 is CULLIDE as published; default: until a round\n"
-             "changes nothing, for far until it culls little",
+             "changes nothing, for far until a view culls little",
      .serves = drawing,
      .take = [](Given text, RunOptions& o) { return take_number_from(1, text, o.rounds); },
      .kind = "number of rounds",
@@ -256,7 +257,7 @@ const Option kOptions[] = {
      .type = "objects|triangles",
      .help = "objects: objects are culled as a whole, their triangles\n"
              "are not; for far, cullide and quick-cullide;\n"
-             "default triangles, which comes after objects",
+             "default triangles, for cullide after objects",
      .serves = drawing_levels,
      .take = take_choice<kLevels, &RunOptions::objects_alone>,
      .kind = "choice",

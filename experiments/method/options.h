@@ -43,12 +43,12 @@ struct RunOptions {
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
   int rounds = 0;                    // largest number of rounds; 0: until a round changes nothing,
-                                     // or for far, until a round culls little
+                                     // or for far, until a view culls little
   ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
   bool objects_alone = false;        // culls only whole objects; not for s-cullide
   bool conservative = false;         // draws each pixel that a triangle touches; not for far
   BroadPhase broad_phase = BroadPhase::objects;  // not for s-cullide
-  std::string views = {};                        // "": x,y,z
+  std::string views = {};                        // "": x,y,z (far: a sample orders them)
   std::string device = {};  // value of --device (kDeviceHelp); "": GL if a hardware device answers,
                             // else the cores of the CPU
   double clearance = 0;     // world units, finite, >= 0; boxes and exact only

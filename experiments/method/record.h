@@ -93,9 +93,9 @@ struct Promise {
   std::optional<DeviceVerdict> verdict;  // empty if the guarantee depends on no device
 };
 
-/// How many colliding pairs FAR loses with a smaller radius, in the same scene, views and pixels.
-/// at_risk: with 0.9 of the budget radius. at_risk_bare: with radius 0. If both numbers are 0, the
-/// scene does not show that the radius is needed.
+/// How many colliding pairs FAR loses with a smaller radius, in the same scene, pixels and all
+/// views. at_risk: with 0.9 of the budget radius. at_risk_bare: with radius 0. If both numbers are
+/// 0, the scene does not show that the radius is needed.
 struct PairsAtRisk {
   std::uint64_t at_risk = 0, at_risk_bare = 0;
 };

@@ -148,7 +148,7 @@ std::string reason_of(const Stage& stage) {
       return "culled is what every view clears";
     case Reason::little_culled:
       return "only " + n + " of " + triangles(stage.m) +
-             " were culled: testing the rest is cheaper than another view";
+             " were culled: testing the rest is cheaper than going on";
     case Reason::owners:
       return "every triangle is an owner";
     case Reason::clusters_given:
@@ -199,7 +199,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::if_changed:
       return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
-      return "if the last view culled at least one triangle in " + n + at_most_rounds(stage);
+      return "if at least one triangle was culled last in " + n + at_most_rounds(stage);
     case Reason::if_more_culled:
       return "if more than " + triangles_left(stage.n) + ", and the last view culled one in " + m;
     case Reason::if_candidates:

@@ -358,14 +358,14 @@ PointResult measure_radius(const Point& point, MeasurementContext& lab) {
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset) {
   const Fattener fattener = offset == "exact" ? minkowski_fattener() : obb_fattener();
   const Regions regions = find_regions(scene);
-  const std::vector<View> views = parse_views(views_of(record.options));
   Fragments sum;
-  for (std::size_t v = 0; v < views.size() && v < record.found.views().size(); ++v) {
-    const auto window = fit_window(views[v], regions.places, resolution_of(record.options));
+  for (const ViewReport& view : record.found.views()) {
+    const auto window =
+        fit_window(parse_view(view.name), regions.places, resolution_of(record.options));
     if (!window) continue;
     FattenCounts counts;
-    const Drawables drawables = fatten(scene, regions.triangles, *window, fattener,
-                                       record.found.views()[v].radius_px, counts);
+    const Drawables drawables =
+        fatten(scene, regions.triangles, *window, fattener, view.radius_px, counts);
     const std::size_t chunks = chunks_for(drawables.elements(), 256);
     std::vector<Fragments> parts(chunks);
     for_chunks(drawables.elements(), chunks,

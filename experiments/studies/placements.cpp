@@ -358,7 +358,8 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
                            .resolution = point.resolution,
                            .radius = point.radius,
                            .depth = DepthMode::fragment,
-                           .verify = false};
+                           .verify = false,
+                           .no_shortcuts = true};
   PlacementCounts counts{.promises = guaranteed(options)};
   PointResult out{.device = "native"};
   int bits = point.subpixel_bits;

@@ -373,6 +373,9 @@ RunOptions options_of(const RunPoint& point, const MeasurementContext& lab) {
                      .device = lab.device(),
                      .verify = false};
   if (!point.offset.empty()) options.offset = point.offset;
+  // A point without times counts misses, so FAR draws all views, as it does with a smaller ball.
+  options.no_shortcuts = point.repeat == 1 && fattens(point.method) &&
+                         !std::holds_alternative<MotionFrame>(point.scene);
   return options;
 }
 

@@ -97,6 +97,10 @@ TEST(ViewOrder, BeginsWithTheViewInWhichLeastIsHidden) {
   for (const double z : {0, 60}) add_sheet({0, 0, z}, {40, 0, 0}, {0, 40, 0}, 20, objects);
   EXPECT_EQ(order_of(objects, "z,x,y"), "x,z,y");  // equal views stay in their order
   EXPECT_EQ(order_of(objects, "z,y,-x"), "y,z,-x");
+  EXPECT_EQ(order_of(objects, "-z,x"), "x,-z");  // here the second object hides the first
+  const double most = std::numeric_limits<double>::max();
+  objects.push_back({{Vec3::Constant(most), Vec3::Constant(-most), Vec3(most, -most, most)}});
+  EXPECT_EQ(order_of(objects, "z,x,y"), "x,z,y");
   EXPECT_EQ(order_of(objects, "z"), "z");
   EXPECT_EQ(order_of({}, "z,x"), "z,x");
 }

@@ -175,6 +175,19 @@ TEST(Planner, SaysWhatItLeavesOut) {
   EXPECT_EQ(decision(plan(crowd, far), "cull objects x, round 1"), "runs");
 }
 
+TEST(Planner, ASampleOrdersTheViewsOfFarUnlessTheyAreGiven) {
+  const Scene scene = make_builtin_scene("two-tori");
+  RunOptions far{.method = Method::far};
+  EXPECT_EQ(decision(plan(scene, far), "fatten z, round 1"), "runs");
+  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "depends");
+  const auto of_y = [&] { return reason_of(stage_named(plan(scene, far), "fatten y, round 1")); };
+  EXPECT_EQ(of_y(), "if more than 256 triangles are left, and the last view culled one in 3");
+  far.views = "x,y,z";
+  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+  far.clear = ClearRule::all;  // the rule is then one of rounds
+  EXPECT_EQ(of_y(), "if any triangle is left");
+}
+
 TEST(Planner, IsTheSameTwiceAndNamesEveryStageInJson) {
   const Scene scene = make_builtin_scene("crowd");
   for (const Method method : all_methods()) {
