@@ -97,12 +97,22 @@ TEST(ViewOrder, BeginsWithTheViewInWhichLeastIsHidden) {
   for (const double z : {0, 60}) add_sheet({0, 0, z}, {40, 0, 0}, {0, 40, 0}, 20, objects);
   EXPECT_EQ(order_of(objects, "z,x,y"), "x,z,y");  // equal views stay in their order
   EXPECT_EQ(order_of(objects, "z,y,-x"), "y,z,-x");
-  EXPECT_EQ(order_of(objects, "-z,x"), "x,-z");  // here the second object hides the first
+  // The second object is cleared against the first, which it hides and so need not be compared
+  // with.
+  EXPECT_EQ(order_of(objects, "-z,x"), "-z,x");
   const double most = std::numeric_limits<double>::max();
   objects.push_back({{Vec3::Constant(most), Vec3::Constant(-most), Vec3(most, -most, most)}});
   EXPECT_EQ(order_of(objects, "z,x,y"), "x,z,y");
   EXPECT_EQ(order_of(objects, "z"), "z");
   EXPECT_EQ(order_of({}, "z,x"), "z,x");
+}
+
+// Along z the objects of three sheets lie in the order 1, 2, 0. Only object 1 is cleared there.
+TEST(ViewOrder, CountsWhatBothPassesClear) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects;
+  for (const double z : {60, 0, 30}) add_sheet({0, 0, z}, {40, 0, 0}, {0, 40, 0}, 10, objects);
+  for (const double x : {0, 80}) add_sheet({x, 60, 0}, {0, 40, 0}, {0, 0, 40}, 12, objects);
+  EXPECT_EQ(order_of(objects, "z,x"), "x,z");  // 300 + 144 against 100 + 2 * 144
 }
 
 // The sheet in the middle of three, whose object is the last, is hidden in x and in -x.
