@@ -20,7 +20,7 @@ struct Sample {
   Vec3 centre;
 };
 
-// The samples that can meet something, in the order of their owners.
+// Returns every k-th triangle of the regions, in the order of owners.
 std::vector<Sample> sample(const Scene& scene, const Regions& regions,
                            std::span<const std::uint32_t> owner) {
   const std::size_t step = (regions.triangles.size() + kMostSamples - 1) / kMostSamples;

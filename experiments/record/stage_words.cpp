@@ -199,7 +199,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::if_changed:
       return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
-      return "if at least one triangle was culled last in " + n + at_most_rounds(stage);
+      return "if at least one triangle in " + n + " was culled last" + at_most_rounds(stage);
     case Reason::if_more_culled:
       return "if more than " + triangles_left(stage.n) + ", and the last view culled one in " + m;
     case Reason::if_candidates:

@@ -1,6 +1,6 @@
 """`python3 stages.py PROGRAM PAGE FIGURE [SCENE...]`: what each stage of FAR takes away and what it costs.
 
-FAR runs as published and with --broad-phase triangles, in turn with the default method and the method exact, every run
+FAR runs with --broad-phase objects and triangles, in turn with the default method and the method exact, every run
 in a process of its own. PAGE is written as Markdown, FIGURE as SVG. `bash experiments/results.sh stages` starts it.
 """
 import datetime
