@@ -10,6 +10,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace farcull {
 
@@ -53,11 +54,15 @@ void validate(const Scene& scene, const std::string& where) {
   }
 }
 
-std::vector<Box> triangle_boxes(const Scene& scene) {
+std::vector<Box> triangle_boxes(const Scene& scene, unsigned threads) {
   std::vector<Box> boxes(scene.triangles.size(), Box::empty());
-  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
-    for (const Vec3& p : scene.corners(t)) boxes[t].add(p);
-  }
+  const std::size_t n = boxes.size();
+  for_chunks(n, chunks_for(n, 4096, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(t));
+      boxes[t] = {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+    }
+  });
   return boxes;
 }
 

@@ -126,7 +126,8 @@ inline VertexRange vertices_of(const Scene& scene, const Object& object) {
 /// the objects' ranges of triangles have no gaps, and `ignored` is sorted.
 void validate(const Scene& scene, const std::string& where);
 
-std::vector<Box> triangle_boxes(const Scene& scene);
+/// threads: 0 for one per core.
+std::vector<Box> triangle_boxes(const Scene& scene, unsigned threads = 1);
 /// Returns the box of each object's triangles. It is empty for an object without triangles.
 std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_boxes);
 /// Returns the object of each triangle.

@@ -12,7 +12,7 @@ namespace farcull {
 
 Regions find_regions(const Scene& scene, const RegionRules& rules) {
   Regions out;
-  out.triangle_boxes = triangle_boxes(scene);
+  out.triangle_boxes = triangle_boxes(scene, rules.threads);
   out.object_boxes = object_boxes(scene, out.triangle_boxes);
 
   std::vector<std::uint32_t> objects(scene.objects.size());
@@ -24,19 +24,35 @@ Regions find_regions(const Scene& scene, const RegionRules& rules) {
     partners[pair.b].push_back(pair.a);
     out.places.push_back(intersection(out.object_boxes[pair.a], out.object_boxes[pair.b]));
   }
-  for (const std::uint32_t o : objects) {
-    const Object& object = scene.objects[o];
-    const bool whole = rules.self && object.self && object.triangle_count > 1;
-    if (whole) out.places.push_back(out.object_boxes[o]);
-    for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
-         ++t) {
-      const auto meets = [&](std::uint32_t partner) {
-        return overlap(out.triangle_boxes[t], out.object_boxes[partner]);
-      };
-      if (rules.full || whole || std::any_of(partners[o].begin(), partners[o].end(), meets))
-        out.triangles.push_back(t);
+  const auto whole = [&](const Object& object) {
+    return rules.self && object.self && object.triangle_count > 1;
+  };
+  for (const std::uint32_t o : objects)
+    if (whole(scene.objects[o])) out.places.push_back(out.object_boxes[o]);
+
+  const std::size_t n = scene.triangles.size(), chunks = chunks_for(n, 4096, rules.threads);
+  std::vector<std::vector<std::uint32_t>> found(chunks);
+  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    const auto ends_before = [&](const Object& object) {
+      return std::size_t{object.first_triangle} + object.triangle_count <= begin;
+    };
+    auto object = std::ranges::partition_point(scene.objects, ends_before);
+    for (std::size_t t = begin; t < end; ++object) {
+      const bool all = rules.full || whole(*object);
+      const auto& others = partners[object - scene.objects.begin()];
+      const std::size_t stop =
+          std::min<std::size_t>(end, object->first_triangle + std::size_t{object->triangle_count});
+      for (; t < stop; ++t) {
+        const auto meets = [&](std::uint32_t partner) {
+          return overlap(out.triangle_boxes[t], out.object_boxes[partner]);
+        };
+        if (all || std::ranges::any_of(others, meets))
+          found[chunk].push_back(static_cast<std::uint32_t>(t));
+      }
     }
-  }
+  });
+  for (const auto& part : found)
+    out.triangles.insert(out.triangles.end(), part.begin(), part.end());
   if (rules.full && out.places.empty() && !out.triangles.empty()) {
     Box all = Box::empty();
     for (const Box& box : out.object_boxes) all.add(box);

@@ -28,6 +28,7 @@ constexpr std::uint32_t kWorthAView = 3;
 struct RegionRules {
   bool self = false;  // tests objects with Object::self against themselves
   bool full = false;  // lets every triangle take part
+  unsigned threads = 1;  // 0: one per core
 };
 
 /// Finds one place for each pair of objects whose boxes overlap: the intersection of the boxes.

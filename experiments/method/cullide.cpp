@@ -152,7 +152,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
 }
 
 // Compares boxes of objects, as published, to find the triangles and the regions to draw.
-void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
+void find_places(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   if (!work.self && has_self(scene)) {
     const std::vector<std::uint32_t> marked = triangles_of_marked(scene);
@@ -160,7 +160,7 @@ void find_places(const Scene& scene, Plan& plan, DrawPlan& work) {
   }
   const Stopwatch watch;
   const bool self = work.self || work.patches.cut;
-  work.regions = find_regions(scene, {.self = self, .full = options.full});
+  work.regions = find_regions(scene, {.self = self, .full = options.full, .threads = threads});
   Stage stage{.kind = StageKind::boxes,
               .ran = true,
               .reason = Reason::full,
@@ -228,7 +228,7 @@ void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& p
   const bool objects = options.broad_phase == BroadPhase::objects;
   if (objects || !compare_boxes(scene, threads, plan, work)) {
     plan.options.broad_phase = BroadPhase::objects;
-    find_places(scene, plan, work);
+    find_places(scene, threads, plan, work);
   }
   if (options.objects_alone && work.patches.cut) {
     throw Error("{level}", "an object that is tested against itself is asked in patches",
