@@ -2,7 +2,6 @@
 // spatial_order() halves a set of boxes along the axis on which the boxes are spread most.
 #include "core/boxes/block.h"
 
-#include <ranges>
 #include <vector>
 
 namespace farcull {
@@ -143,26 +142,15 @@ struct Spread {
   }
 };
 
-// Returns the spread of a sample. On each axis, leaves out the lowest and the highest eighth of the
-// sample, so that a few distant boxes do not decide.
-Spread sampled_spread(std::span<const Placed> items) {
-  constexpr std::size_t kMost = 32;
-  const std::size_t n = std::min(items.size() / 4, kMost), end = n / 8;
-  std::array<double, kMost> at;
+// Returns the spread of every step-th item.
+Spread spread_of(std::span<const Placed> items, std::size_t step) {
   Spread out;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < n; ++k) at[k] = items[items.size() * k / n].middle[axis];
-    std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(n));
-    out.widen({axis, at[end], at[n - 1 - end]});
-  }
-  return out;
-}
-
-Spread whole_spread(std::span<const Placed> items) {
-  Spread out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [lo, hi] = std::ranges::minmax(
-        items | std::views::transform([&](const Placed& item) { return item.middle[axis]; }));
+    double lo = items[0].middle[axis], hi = lo;
+    for (std::size_t k = step; k < items.size(); k += step) {
+      lo = std::min(lo, items[k].middle[axis]);
+      hi = std::max(hi, items[k].middle[axis]);
+    }
     out.widen({axis, lo, hi});
   }
   return out;
@@ -171,8 +159,8 @@ Spread whole_spread(std::span<const Placed> items) {
 // Puts the items in order. `at`: the position of the first item among all boxes.
 void sort_in_place(std::span<Placed> items, std::size_t at) {
   while (items.size() > kWide) {
-    Spread spread = sampled_spread(items);
-    if (spread.half() == 0) spread = whole_spread(items);
+    Spread spread = spread_of(items, std::max<std::size_t>(items.size() / 32, 4));
+    if (spread.half() == 0) spread = spread_of(items, 1);
     if (spread.half() == 0) return;
     // Moves boxes that span the whole spread to the front, since they would enlarge either half.
     // Splits them off if they are at most half of the items, so the depth stays O(log n).

@@ -4,6 +4,7 @@
 
 #include "core/base/random.h"
 #include "core/view/regions.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "tests/lab/reference.h"
 
 namespace farcull {
@@ -65,6 +66,8 @@ TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {
   }
   EXPECT_GT(found, 10000u);
   EXPECT_LT(undecided, 100u);
+  // Here a tree over the triangles would find the pairs, not the blocks.
+  EXPECT_FALSE(pairs_of_boxes(make_builtin_scene("needles:2000"), {}, true, 1));
 }
 
 TEST(BoxesBeforePixels, PlacesAreWhereTheBoxesOfTwoTrianglesMeet) {

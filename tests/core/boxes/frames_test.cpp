@@ -158,6 +158,18 @@ TEST(FrameMemory, OfAFrameInWhichNothingMovedComparesAndDecidesNothing) {
     EXPECT_EQ(plan.decision.blocks.pairs.size() > 0, frame == 0);
     EXPECT_EQ(decider.decided(), frame == 0 ? found.size() : 0);
   }
+  // The same candidates under another clearance are decided again.
+  const BoxesSettings wide{.clearance = 0.01};
+  const auto candidates = find_boxes(scene, plan_boxes(scene, wide, 2)).candidates;
+  std::set<std::size_t> sizes;
+  for (const double clearance : {0.0, 0.01}) {
+    memory.moved.update(scene);
+    const ExactQuestion question{.clearance = clearance};
+    const auto pairs = decider.decide(scene, candidates, memory.moved, question).pairs;
+    EXPECT_EQ(pairs, decide(scene, candidates, question).pairs);
+    sizes.insert(pairs.size());
+  }
+  EXPECT_EQ(sizes.size(), 2u);
 }
 
 // Little moves in a frame after the other, so that what is kept for long is right too.

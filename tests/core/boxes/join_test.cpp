@@ -251,6 +251,13 @@ TEST(OrderedPairs, GivesManyPairsFromSeveralThreadsAndEndsAtAFailure) {
   }
 }
 
+// So many triangles are searched by several threads at once, each with a part of them.
+TEST(OrderedPairs, EndBehindTheFirstPartThatIsNotComplete) {
+  Random random(623);
+  const Scene scene = some_scene(random, 4'200);
+  EXPECT_EQ(streamed(scene, 0, {}, 3, 40), overlapping(scene, 0));
+}
+
 TEST(OrderedPairs, OfAClearanceBeyondTheDoublesAreAllPairs) {
   Random random(622);
   Scene scene = some_scene(random, 40);

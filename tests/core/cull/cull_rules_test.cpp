@@ -66,6 +66,25 @@ TEST(CullRules, TheObjectLevelCanBeLeftOut) {
   }
 }
 
+// The window cuts the large triangle to a polygon of more than three corners. Small triangles meet
+// it everywhere in the window.
+TEST(CullRules, EveryPartOfAClippedTriangleIsDrawn) {
+  std::vector<std::array<Vec3, 3>> small;
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) {
+      const Vec3 p(x, y, -0.5);
+      small.push_back({p, p + Vec3(0.5, 0, 1), p + Vec3(0, 0.5, 1)});
+    }
+  }
+  const Scene scene = lab::scene_of(std::vector<std::vector<std::array<Vec3, 3>>>{
+      {{Vec3(-90, -80, 0), Vec3(100, -70, 0), Vec3(-10, 120, 0)}}, small});
+  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
+    CullSettings settings = settings_of(fattener);
+    settings.views = parse_views("z");
+    EXPECT_EQ(cull_of(scene, settings).live.size(), scene.triangles.size()) << fattener.name;
+  }
+}
+
 /// Adds an object: n x n small triangles in the square from `at` along `u` and `v`.
 void add_sheet(Vec3 at, const Vec3& u, const Vec3& v, int n,
                std::vector<std::vector<std::array<Vec3, 3>>>& out) {

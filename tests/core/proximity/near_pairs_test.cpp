@@ -119,6 +119,23 @@ TEST(NearPairs, HoldsEveryNearestPairOfManyRuns) {
   EXPECT_EQ(wrong_answers(trials(100), 150, [](NearPairs&) {}), 0);
 }
 
+// Few triangles meet, so the first pair that meets is seldom the first that is found.
+TEST(NearPairs, HoldsTheFirstPairThatMeetsInASparseObject) {
+  Random random(9);
+  int meet = 0;
+  for (int k = 0; more_cases(k, trials(1600), meet > 20); ++k) {
+    GridScene grid;
+    add_object(grid, near_lab::random_triangles(random, 40 + k % 200, 10 + k % 60, {0, 0, 0}));
+    finish(grid, 1, 0, [] { return false; });
+    const ObjectPair question = {0, 0};
+    const Truth truth = truth_of(grid, 0, 0);
+    meet += truth.squared.numerator == 0;
+    const NearPairs answer =
+        ProximityTrees(grid.scene, 1).near_pairs({&question, 1}, kInfinite, {}).front();
+    EXPECT_EQ(fault_of(grid, truth, answer, kInfinite), "") << k;
+  }
+}
+
 // More runs than the memory of a search holds, on either side.
 TEST(NearPairs, HoldsEveryNearestPairOfRunsBeyondTheMemory) {
   Random random(8);

@@ -94,7 +94,7 @@ TEST(TiesTwin, WithoutSettlingAllPairsAreLookedAtAndKept) {
 int wrong_of_layers(double error) {
   rational::Draws random(21);
   int wrong = 0;
-  const int least = error == 0 ? trials(60) : 0;
+  const int least = error == 0 ? trials(240) : 0;
   for (int k = 0; more_cases(k, least, error == 0 || wrong > 0, 1000); ++k) {
     const int slopes = random.below(3), wide = 2 + random.below(3);
     std::vector<TiedTriangles> objects(2);
