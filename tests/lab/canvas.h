@@ -47,6 +47,17 @@ inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint3
     draws.push_back({e, slot});
 }
 
+/// Whether element 1 is seen behind element 0 in some pixel.
+inline bool is_seen(Canvas& canvas, const Window& w, const Drawables& drawables, bool touching) {
+  Pass pass;
+  pass.slots = 1;
+  pass.touching = touching;
+  pass.draws = {{0, 0}, {1, 0}};
+  pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 1}};
+  canvas.begin(w, drawables);
+  return canvas.run(pass)[0] != 0;
+}
+
 inline double budget_radius(const Canvas& canvas, const Window& w) {
   return budget_for(canvas.limits(), viewport_side(w.width)).radius();
 }

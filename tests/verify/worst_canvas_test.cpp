@@ -127,13 +127,7 @@ TEST(WorstTouching, IsSeenWhereItCounts) {
       drawables.mode = DepthMode::fixed;
       drawables.first = {0, 1, 2};
       drawables.triangles = {triangle(stored), triangle(asked)};
-      Pass pass;
-      pass.slots = 1;
-      pass.touching = touching;
-      pass.draws = {{0, 0}, {1, 0}};
-      pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 1}};
-      canvas.begin(window, drawables);
-      return canvas.run(pass)[0] != 0;
+      return lab::is_seen(canvas, window, drawables, touching);
     };
     EXPECT_TRUE(is_seen(3, 3, true)) << bits;
     EXPECT_FALSE(is_seen(3, 3, false)) << bits;

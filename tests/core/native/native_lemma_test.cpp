@@ -133,18 +133,6 @@ Proxy slice(float near, float far) {
   return out;
 }
 
-/// Whether element 1 is seen behind element 0 in some pixel.
-bool is_seen(NativeCanvas& canvas, const Window& window, const Drawables& drawables,
-             bool touching) {
-  Pass pass;
-  pass.slots = 1;
-  pass.touching = touching;
-  pass.draws = {{0, 0}, {1, 0}};
-  pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 1}};
-  canvas.begin(window, drawables);
-  return canvas.run(pass)[0] != 0;
-}
-
 // Two solids that share a depth and no more touch. FAR asks for that, since such triangles may
 // meet.
 TEST(NativeDepth, SolidsThatTouchAreSeenWhereTouchingCounts) {
@@ -155,13 +143,13 @@ TEST(NativeDepth, SolidsThatTouchAreSeenWhereTouchingCounts) {
     for (const int bits : {32, 24}) {
       NativeCanvas canvas(DepthMode::fragment, obb_fattener().solid, {.depth_bits = bits});
       drawables.proxies = {slice(3, 9), slice(-5, 3)};
-      EXPECT_TRUE(is_seen(canvas, window, drawables, true)) << bits;
-      EXPECT_FALSE(is_seen(canvas, window, drawables, false)) << bits;
+      EXPECT_TRUE(lab::is_seen(canvas, window, drawables, true)) << bits;
+      EXPECT_FALSE(lab::is_seen(canvas, window, drawables, false)) << bits;
       // The twins: a quarter of a pixel less, or more.
       drawables.proxies[1] = slice(-5, 2.75f);
-      EXPECT_FALSE(is_seen(canvas, window, drawables, true)) << bits;
+      EXPECT_FALSE(lab::is_seen(canvas, window, drawables, true)) << bits;
       drawables.proxies[1] = slice(-5, 3.25f);
-      EXPECT_TRUE(is_seen(canvas, window, drawables, false)) << bits;
+      EXPECT_TRUE(lab::is_seen(canvas, window, drawables, false)) << bits;
     }
   });
 }

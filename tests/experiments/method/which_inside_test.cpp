@@ -49,17 +49,15 @@ TEST(WhichInside, IsWhereAllPartsAre) {
 // A part that is inside by its box alone: between two parts of the outer object.
 TEST(WhichInside, IsDecidedByParityNotByBoxes) {
   Parts parts;
-  add_box(parts, {0, 0, 0}, 1);
-  add_box(parts, {10, 10, 10}, 1);
-  parts.end("");
+  const auto add_two = [&](double half, double first, double second) {
+    for (const double at : {first, second}) add_box(parts, Vec3::Constant(at), half);
+    parts.end("");
+  };
+  add_two(1, 0, 10);
   add_box(parts, {5, 5, 5}, 1);
   parts.end("");
-  add_box(parts, {0, 0, 0}, 0.5);
-  add_box(parts, {5, 5, 5}, 0.5);
-  parts.end("");  // a part inside the first box, a part between the two
-  add_box(parts, {0, 0, 0}, 0.5);
-  add_box(parts, {10, 10, 10}, 0.5);
-  parts.end("");  // a part inside either
+  add_two(0.5, 0, 5);   // a part inside the first box, a part between the two
+  add_two(0.5, 0, 10);  // a part inside either
   EXPECT_EQ(Insides(parts.scene).which(0, 1), WhichInside::none);
   EXPECT_EQ(Insides(parts.scene).which(0, 2), WhichInside::none);
   EXPECT_EQ(Insides(parts.scene).which(0, 3), WhichInside::b);
