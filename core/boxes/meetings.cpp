@@ -225,7 +225,7 @@ std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
 
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
-                              std::shared_ptr<const TriangleBlocks> of) {
+                              std::shared_ptr<const TriangleBlocks> of, bool along_axes) {
   const TriangleBlocks& blocks = *of;
   BlockDecision out{.blocks = {}, .pairs = meetings.pairs, .self = meetings.self};
   out.blocks.of = std::move(of);
@@ -238,7 +238,7 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings
                   });
   if (found == Found::all && sort_in(meetings.all, parts, out.blocks)) {
     const double axes = overlaps_by_sample(scene, out.blocks, clearance);
-    out.blocks.normals = axes > kFewOverlaps;
+    out.blocks.normals = !along_axes && axes > kFewOverlaps;
     if (out.blocks.normals) {
       const double left = overlaps_by_sample(scene, out.blocks, clearance);
       out.blocks.normals = left <= kMostLeft && kLeastDrop * left <= axes;
@@ -246,34 +246,64 @@ BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings
     if (out.blocks.normals || axes <= kOverlapsPerTriangle) return out;
   }
   out.blocks = {};
+  out.tree = Reason::join_often;
   if (found == Found::too_many) {
     out.tree = Reason::join_many_blocks;
     out.tree_n = most_pairs(blocks);
-  } else if (auto oriented = oriented_meetings(scene, meetings.all, regions, clearance, threads)) {
-    out.blocks = *std::move(oriented);
-  } else {
-    out.tree = Reason::join_often;
+  } else if (!along_axes) {
+    if (auto oriented = oriented_meetings(scene, meetings.all, regions, clearance, threads)) {
+      out.blocks = *std::move(oriented);
+      out.tree = Reason::none;
+    }
   }
   return out;
 }
 
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads,
-                               std::span<const ObjectPair> ignored) {
+                               std::span<const ObjectPair> ignored, bool along_axes) {
   const auto blocks = std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads));
   const ObjectOverlaps meetings = find_meetings(scene, *blocks, ignored);
   if (auto decision = decide_by_meetings(*blocks, meetings)) return *std::move(decision);
   const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
   gather_scattered(scene, clearance, regions, threads, *blocks);
-  return decide_by_pairs(scene, meetings, regions, clearance, threads, blocks);
+  return decide_by_pairs(scene, meetings, regions, clearance, threads, blocks, along_axes);
 }
 
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads) {
-  const BlockDecision decision = decide_by_blocks(scene, 0, threads, ignored);
-  if (decision.tree != Reason::none || decision.blocks.oriented || decision.blocks.normals)
-    return std::nullopt;
+  const BlockDecision decision = decide_by_blocks(scene, 0, threads, ignored, true);
+  if (decision.tree != Reason::none) return std::nullopt;
   return pairs_of_blocks(scene, decision.blocks, 0, neighbours, threads);
+}
+
+std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const Box> boxes,
+                                        std::span<const std::uint32_t> items, unsigned threads) {
+  Scene some;  // has these triangles alone, in the same objects
+  some.vertices.resize(3 * items.size());
+  some.triangles.resize(items.size());
+  for_chunks(items.size(), chunks_for(items.size(), 4096, threads),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               for (std::size_t k = begin; k < end; ++k) {
+                 const auto v = static_cast<std::uint32_t>(3 * k);
+                 some.triangles[k] = {v, v + 1, v + 2};
+                 std::ranges::copy(scene.corners(items[k]), some.vertices.begin() + v);
+               }
+             });
+  std::size_t next = 0;
+  for (const Object& object : scene.objects) {
+    const auto first = static_cast<std::uint32_t>(next);
+    const std::uint32_t behind = object.first_triangle + object.triangle_count;
+    next = static_cast<std::size_t>(std::ranges::lower_bound(items, behind) - items.begin());
+    some.objects.push_back({.name = {},
+                            .first_triangle = first,
+                            .triangle_count = static_cast<std::uint32_t>(next) - first,
+                            .self = object.self});
+  }
+  std::optional<std::vector<TrianglePair>> pairs = pairs_of_boxes(some, {}, true, threads);
+  if (!pairs) return box_join(boxes, join_owners(scene), items, SIZE_MAX, threads);
+  for (TrianglePair& pair : *pairs) pair = {items[pair.a], items[pair.b]};
+  return *std::move(pairs);
 }
 
 }  // namespace farcull

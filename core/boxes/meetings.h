@@ -66,8 +66,9 @@ struct BlockDecision {
 /// 3. Blocks with oriented boxes, if few of these boxes overlap in a sample.
 /// 4. A tree.
 /// threads: 0 for as many as there are cores; changes no answer. ignored: as for find_meetings().
+/// along_axes: true leaves out rule 3 and the normals of rule 2.
 BlockDecision decide_by_blocks(const Scene& scene, double clearance, unsigned threads = 0,
-                               std::span<const ObjectPair> ignored = {});
+                               std::span<const ObjectPair> ignored = {}, bool along_axes = false);
 
 /// Returns the decision of decide_by_blocks(), or empty if blocks and meetings do not determine it.
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
@@ -76,7 +77,8 @@ std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
 /// the blocks have their boxes or lanes. regions: a result of boxes_of_meetings().
 BlockDecision decide_by_pairs(const Scene& scene, const ObjectOverlaps& meetings,
                               const std::vector<Box>& regions, double clearance, unsigned threads,
-                              std::shared_ptr<const TriangleBlocks> blocks);
+                              std::shared_ptr<const TriangleBlocks> blocks,
+                              bool along_axes = false);
 
 /// Estimates how many pairs of triangles are left per triangle of the blocks, not counting
 /// neighbours. Samples pairs of blocks, and reads only vertices of these blocks.
@@ -85,11 +87,15 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
 /// Returns the number of triangles in all blocks that occur in the pairs.
 std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks);
 
-/// Returns all pairs of triangles whose boxes overlap, sorted. Returns empty if decide_by_blocks()
-/// chooses a tree, oriented boxes or normals. ignored, threads: as for decide_by_blocks().
+/// Returns all pairs of triangles whose boxes overlap, sorted. Returns empty if decide_by_blocks(),
+/// with boxes along the axes alone, chooses a tree. ignored, threads: as for decide_by_blocks().
 /// neighbours: false leaves out pairs of one object that share a vertex index.
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads);
+/// Returns the pairs of box_join() with join_owners(), in less time if boxes of blocks decide.
+/// boxes: per triangle of the scene. items: triangles, ascending. threads: 0 for one per core.
+std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const Box> boxes,
+                                        std::span<const std::uint32_t> items, unsigned threads);
 
 }  // namespace farcull

@@ -10,12 +10,8 @@
 namespace farcull {
 namespace {
 
-using lab::missed;
-using lab::overlapping;
-using lab::random_scene;
-using lab::shuffled;
-using lab::truth_of;
-using lab::with_self;
+using lab::missed, lab::overlapping, lab::random_scene, lab::shuffled, lab::truth_of,
+    lab::with_self;
 
 std::vector<Scene> small_scenes() {
   std::vector<Scene> out;

@@ -9,9 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::Indices;
-using lab::overlapping;
-using lab::Pairs;
+using lab::Indices, lab::overlapping, lab::Pairs;
 using rational::Random;
 
 Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, const Indices& items) {

@@ -10,10 +10,7 @@
 namespace farcull {
 namespace {
 
-using lab::missed;
-using lab::random_scene;
-using lab::truth_of;
-using lab::with_self;
+using lab::missed, lab::random_scene, lab::truth_of, lab::with_self;
 
 // The pairs of all blocks of a scene, whatever the rules would choose.
 std::vector<TrianglePair> pairs_of(const Scene& scene, bool along_normals, double clearance) {

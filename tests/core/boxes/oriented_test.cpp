@@ -9,10 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::missed;
-using lab::random_scene;
-using lab::truth_of;
-using lab::with_self;
+using lab::missed, lab::random_scene, lab::truth_of, lab::with_self;
 
 // All pairs of blocks of a scene whose oriented boxes may meet.
 BlockPairs block_pairs(const Scene& scene, const OrientedBlocks& blocks) {

@@ -8,12 +8,8 @@
 namespace farcull {
 namespace {
 
-using lab::missed;
-using lab::pairs_by_boxes;
-using lab::Random;
-using lab::random_scene;
-using lab::truth_of;
-using lab::with_self;
+using lab::missed, lab::pairs_by_boxes, lab::Random, lab::random_scene, lab::truth_of,
+    lab::with_self;
 using Objects = std::vector<std::vector<std::array<Vec3, 3>>>;
 
 void expect_none_missed(const Scene& scene, const BoxesSettings& settings, std::uint64_t seed) {
