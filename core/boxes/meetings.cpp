@@ -277,8 +277,8 @@ std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
   return pairs_of_blocks(scene, decision.blocks, 0, neighbours, threads);
 }
 
-std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const Box> boxes,
-                                        std::span<const std::uint32_t> items, unsigned threads) {
+std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const std::uint32_t> items,
+                                        unsigned threads) {
   Scene some;  // has these triangles alone, in the same objects
   some.vertices.resize(3 * items.size());
   some.triangles.resize(items.size());
@@ -301,7 +301,7 @@ std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const Box>
                             .self = object.self});
   }
   std::optional<std::vector<TrianglePair>> pairs = pairs_of_boxes(some, {}, true, threads);
-  if (!pairs) return box_join(boxes, join_owners(scene), items, SIZE_MAX, threads);
+  if (!pairs) pairs = OrderedPairs(some, 0, {}, true, threads).all();
   for (TrianglePair& pair : *pairs) pair = {items[pair.a], items[pair.b]};
   return *std::move(pairs);
 }

@@ -93,9 +93,8 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads);
-/// Returns the pairs of box_join() with join_owners(), in less time if boxes of blocks decide.
-/// boxes: per triangle of the scene. items: triangles, ascending. threads: 0 for one per core.
-std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const Box> boxes,
-                                        std::span<const std::uint32_t> items, unsigned threads);
+/// Returns the pairs of these triangles (ascending) whose boxes overlap, as OrderedPairs does.
+std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const std::uint32_t> items,
+                                        unsigned threads);
 
 }  // namespace farcull

@@ -26,17 +26,19 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
   }
   VoronoiGrid out;
   if (box.is_empty()) return out;
-  const double largest =
-      std::max(box.lo.lpNorm<Eigen::Infinity>(), box.hi.lpNorm<Eigen::Infinity>());
-  if (!(largest > 0)) return out;
-  // 2^exponent scales the largest |coordinate| into [1, 2). A coordinate that becomes subnormal
-  // errs by less than 2^-1074, far less than a cell, which is at least 2^-52 / kVoronoiLargest.
-  out.exponent = -std::ilogb(largest);
-  Vec3 extent;
+  out.lo = box.lo;
+  double largest = 0;  // largest |coordinate| along the axes in which the box extends
   for (int k = 0; k < 3; ++k) {
-    out.lo[k] = std::ldexp(box.lo[k], out.exponent);
-    extent[k] = std::ldexp(box.hi[k], out.exponent) - out.lo[k];
-    if (extent[k] > 0) extent[k] = up(extent[k]);
+    if (box.lo[k] < box.hi[k]) largest = std::max({largest, -box.lo[k], box.hi[k]});
+  }
+  if (!(largest > 0)) return out;
+  // 2^exponent scales `largest` into [1, 2). A coordinate that becomes subnormal errs by less than
+  // 2^-1074, far less than a cell, which is at least 2^-53 / kVoronoiLargest.
+  out.exponent = -std::ilogb(largest);
+  Vec3 extent = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (box.lo[k] < box.hi[k])
+      extent[k] = up(std::ldexp(box.hi[k], out.exponent) - std::ldexp(box.lo[k], out.exponent));
   }
   const double most = extent.maxCoeff();
   if (!(most > 0)) return out;
@@ -60,7 +62,10 @@ std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& 
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
           const auto axis = static_cast<int>(k);
-          const double moved = std::ldexp(corners[i][axis], grid.exponent) - grid.lo[axis];
+          // Where the box does not extend, scaled coordinates may be infinite.
+          const double at = corners[i][axis], lo = grid.lo[axis];
+          const double moved =
+              at == lo ? 0 : std::ldexp(at, grid.exponent) - std::ldexp(lo, grid.exponent);
           out[t].corners[i][k] = static_cast<float>(moved / grid.cell);
         }
       }

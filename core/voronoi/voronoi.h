@@ -58,7 +58,7 @@ namespace farcull {
 /// The cubes [0, cells[0]] x [0, cells[1]] x [0, cells[2]] contain all triangles of the scene.
 struct VoronoiGrid {
   int exponent = 0;
-  Vec3 lo = Vec3::Zero();
+  Vec3 lo = Vec3::Zero();  // world units
   double cell = 1;
   std::array<int, 3> cells = {1, 1, 1};
 

@@ -296,7 +296,7 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
     std::ranges::set_union(out.triangles, members, std::back_inserter(all));
     out.triangles = std::move(all);
   } else {
-    out.pairs = pairs_of_some(scene, boxes, out.triangles, session.threads());
+    out.pairs = pairs_of_some(scene, out.triangles, session.threads());
   }
   out.count = out.pairs.size();
   Stage stage = join_stage(work);

@@ -369,6 +369,12 @@ class Equations {
     before_.assign(views_.size(), now_);
   }
 
+  // Returns the probability that a triangle is kept.
+  double kept(std::uint32_t t) const {
+    return settings_.quick ? 1 - (1 - now_[0][t]) * (1 - now_[1][t]) : now_[0][t];
+  }
+
+  // Returns the probability that a pair is found.
   double found(TrianglePair pair) {
     if (owner_[pair.a] > owner_[pair.b]) std::swap(pair.a, pair.b);
     const auto& [a, b] = pair;
@@ -531,7 +537,8 @@ std::string misses_line(const MissesOfPlan& misses) {
   const MissPrediction& of = *misses.predicted;
   const auto whole = [](double x) { return std::to_string(std::llround(x)); };
   return kName + whole(of.missed) + " of " + std::to_string(of.colliding) +
-         " colliding pairs expected, " + whole(of.low()) + " to " + whole(of.high()) + "\n";
+         " colliding pairs expected, " + whole(of.low()) + " to " + whole(of.high()) +
+         (of.judged() ? "\n" : "; the range is reliable only up to 40 % misses\n");
 }
 
 std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan& work,
@@ -556,14 +563,26 @@ std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan&
   if (views.empty()) return out;
   Equations equations(scene, std::move(views), work.settings, sharpness);
   equations.solve();
+  struct PairsOf {
+    double sum = 0, squares = 0, most = 0;  // of the probabilities that its pairs are found
+  };
+  std::vector<PairsOf> triangles(scene.triangles.size());
   double variance = 0;
   for (const TrianglePair& pair : colliding) {
-    const double missed = 1 - equations.found(pair);
-    out.missed += missed;
-    variance += missed * (1 - missed);
+    const double found = equations.found(pair);
+    out.missed += 1 - found;
+    variance += found * (1 - found);
+    for (PairsOf* const own : {&triangles[pair.a], &triangles[pair.b]})
+      *own = {own->sum + found, own->squares + found * found, std::max(own->most, found)};
   }
-  // The variance is doubled, since pairs with a common triangle are mostly missed together.
-  out.deviation = std::sqrt(2 * variance);
+  // A culled triangle loses all its pairs. So two pairs of a triangle that is kept with the
+  // probability k are both found with the probability p q / k if they are found with p and q.
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const auto& [sum, squares, most] = triangles[t];
+    const double kept = std::max(equations.kept(t), most);
+    if (kept > 0) variance += (sum * sum - squares) * (1 - kept) / kept;
+  }
+  out.deviation = std::sqrt(variance);
   return out;
 }
 

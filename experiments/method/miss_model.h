@@ -22,6 +22,9 @@ struct MissPrediction {
   /// standard deviations and the error of the model.
   double low() const;
   double high() const;
+  /// True if at most 40 % of the pairs are expected to be missed. Beyond, runs were outside the
+  /// interval more often than it says (docs/results/misses.md).
+  bool judged() const { return missed <= 0.4 * static_cast<double>(colliding); }
 };
 
 /// Returns why there is no prediction for these options, for example because the method misses

@@ -456,7 +456,8 @@ Json plan_json(const Scene& scene, const Plan& plan, const std::optional<MissPre
     missed = {{"colliding", misses->colliding},
               {"expected", misses->missed},
               {"low", misses->low()},
-              {"high", misses->high()}};
+              {"high", misses->high()},
+              {"judged", misses->judged()}};
   }
   return {{"scene", scene.name},
           {"objects", scene.objects.size()},

@@ -9,9 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::expect_no_wrong_answer;
-using lab::GlFault;
-using lab::GlFaultOutcome;
+using lab::expect_no_wrong_answer, lab::GlFault, lab::GlFaultOutcome;
 
 struct Setting {
   const char* name;

@@ -167,8 +167,7 @@ TEST(Contexts, AnyOrderOfUse) {
               answers);
 }
 
-using lab::GlFault;
-using lab::GlFaultOutcome;
+using lab::GlFault, lab::GlFaultOutcome;
 
 TEST(SessionFaults, ASessionGoesOnAfterAFailure) {
   const Scene scene = make_builtin_scene("two-spheres");

@@ -8,9 +8,7 @@
 namespace farcull {
 namespace {
 
-using lab::Disturbed;
-using lab::Environment;
-using lab::environments;
+using lab::Disturbed, lab::Environment, lab::environments;
 
 TEST(FloatingPoint, ArithmeticShowsEveryEnvironment) {
   EXPECT_EQ(floating_point(), kProved);

@@ -57,8 +57,7 @@ void expect_pairs_of_a_part(const Scene& scene, std::uint64_t seed) {
   for (std::uint32_t t = 0; t < boxes.size(); ++t) {
     if (t % 3 != seed % 3 && owner[t] != seed % 7) some.push_back(t);
   }
-  EXPECT_EQ(pairs_of_some(scene, boxes, some, 1), box_join(boxes, join_owners(scene), some))
-      << seed;
+  EXPECT_EQ(pairs_of_some(scene, some, 1), box_join(boxes, join_owners(scene), some)) << seed;
 }
 
 TEST(BoxesBeforePixels, FindAllPairsWhoseBoxesOverlap) {

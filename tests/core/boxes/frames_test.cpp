@@ -8,8 +8,7 @@
 namespace farcull {
 namespace {
 
-using lab::Random;
-using lab::with_self;
+using lab::Random, lab::with_self;
 
 double size_of(const Scene& scene) {
   Box box = Box::empty();

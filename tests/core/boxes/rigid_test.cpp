@@ -10,8 +10,7 @@
 namespace farcull {
 namespace {
 
-using lab::random_motion;
-using lab::random_scene;
+using lab::random_motion, lab::random_scene;
 
 // The vertices of each object's own, so that objects may move apart.
 Scene unshared(const Scene& scene) {

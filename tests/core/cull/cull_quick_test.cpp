@@ -7,10 +7,7 @@
 namespace farcull {
 namespace {
 
-using lab::Drawing;
-using lab::first_step_behind;
-using lab::StepRecord;
-using lab::Trace;
+using lab::Drawing, lab::first_step_behind, lab::StepRecord, lab::Trace;
 
 struct Case {
   Scene scene;

@@ -178,8 +178,7 @@ TEST(CullRules, AViewFollowsOneThatCulledAThird) {
 // ---- Triangles as owners: S-CULLIDE with raw triangles and a strict test, and the same with
 // fattened ones, which promises.
 
-using lab::Drawing;
-using lab::Trace;
+using lab::Drawing, lab::Trace;
 
 CullSettings self_settings(const Drawing& drawing, bool touching) {
   const bool raw = drawing.fattener.name == "raw";

@@ -6,8 +6,7 @@
 namespace farcull {
 namespace {
 
-using lab::Drawing;
-using lab::Trace;
+using lab::Drawing, lab::Trace;
 
 Drawing on_gl(const Fattener& fattener, QueryMode query) {
   return {fattener, std::make_shared<GlCanvas>(lab::context(), fattener.mode, fattener.solid,

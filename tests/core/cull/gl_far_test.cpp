@@ -9,10 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::canvases;
-using lab::corner_scene;
-using lab::random_scene;
-using lab::undrawable_scene;
+using lab::canvases, lab::corner_scene, lab::random_scene, lab::undrawable_scene;
 
 Session& session() {
   static Session shared("gl");

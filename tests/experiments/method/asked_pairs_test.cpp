@@ -9,8 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::on_cpu;
-using lab::run;
+using lab::on_cpu, lab::run;
 
 const std::vector<ObjectPair> kIgnored = {{0, 1}, {0, 3}, {2, 5}, {6, 7}};
 

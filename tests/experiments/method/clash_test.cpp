@@ -10,8 +10,7 @@
 namespace farcull {
 namespace {
 
-using lab::Assembly;
-using lab::Parts;
+using lab::Assembly, lab::Parts;
 using enum ClashVerdict;
 
 /// The verdict of each pair that is not clear.

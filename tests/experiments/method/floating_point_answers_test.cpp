@@ -9,9 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::Disturbed;
-using lab::Environment;
-using lab::environments;
+using lab::Disturbed, lab::Environment, lab::environments;
 
 // Enough pairs that several threads decide.
 constexpr std::size_t kCopies = 48;

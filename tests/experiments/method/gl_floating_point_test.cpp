@@ -9,9 +9,7 @@ extern "C" void (*epoxy_glDrawArrays)(unsigned, int, int);
 namespace farcull {
 namespace {
 
-using lab::Disturbed;
-using lab::Environment;
-using lab::environments;
+using lab::Disturbed, lab::Environment, lab::environments;
 
 TEST(GlFloatingPoint, EveryMethodThatPromises) {
   RunOptions far{.method = Method::far};

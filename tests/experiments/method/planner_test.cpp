@@ -13,9 +13,7 @@
 namespace farcull {
 namespace {
 
-using lab::not_followed;
-using lab::on_cpu;
-using lab::run;
+using lab::not_followed, lab::on_cpu, lab::run;
 
 Stage stage_named(const Plan& plan, const std::string& name) {
   for (const Stage& stage : plan.stages())

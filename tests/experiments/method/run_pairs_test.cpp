@@ -8,8 +8,7 @@
 namespace farcull {
 namespace {
 
-using lab::on_cpu;
-using lab::run;
+using lab::on_cpu, lab::run;
 
 Scene self_scene(const std::string& name) { return lab::with_self(make_builtin_scene(name)); }
 

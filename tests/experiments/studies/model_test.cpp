@@ -156,6 +156,22 @@ TEST(MissModel, PartsFarApartOnABarHoldCentresEachByItself) {
   EXPECT_GT(factor_between(twin, missed), 1.5);
 }
 
+// One triangle and twenty others that all cross it in a point. If it is culled, all are missed.
+TEST(MissModel, PairsOfOneTriangleAreMissedTogether) {
+  shapes::Random random(3);
+  Scene scene{.name = "star"};
+  for (std::uint32_t k = 0; k < 21; ++k) {
+    const Vec3 p = random.in_cube(1), q = random.in_cube(1);
+    scene.vertices.insert(scene.vertices.end(), {p, q, -p - q});
+    scene.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  scene.objects = {{"one", 0, 1}, {"others", 1, 20}};
+  const RunOptions options{.method = Method::cullide, .resolution = 3};
+  const MissPrediction of = misses_of(scene, plan(scene, options)).predicted.value();
+  ASSERT_EQ(of.colliding, 20u);
+  EXPECT_GT(of.deviation * of.deviation, 5 * of.missed * (1 - of.missed / 20));
+}
+
 TEST(MissModel, SaysWhereItHasNoPrediction) {
   RunOptions options{.method = Method::cullide};
   EXPECT_EQ(why_unpredicted(options), "");
