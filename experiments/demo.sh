@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Demonstrates farcull in one command, on a machine with only Debian and a checkout.
-# 1. Installs the packages that are missing, builds the program (no tests), fetches real meshes meanwhile.
-# 2. Compares FAR, CULLIDE, boxes and the method exact on two bunnies that interpenetrate, and
+# 1. Installs missing packages, and builds the program without tests. Downloads real meshes at the same time.
+# 2. Compares the methods far, cullide, boxes and exact on two bunnies that interpenetrate, and
 #    prints a table. Exact predicates check every pair that a method culled.
 # 3. Draws a picture of what CULLIDE misses and FAR finds, measures the small grids of all studies,
 #    and makes the report.
-# Exit status: that of the comparison, else that of the first step after it that failed; 2 if the comparison did not start.
+# Exit status: that of the first command that failed, from the comparison on; 2 if the comparison did not start.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -31,7 +31,7 @@ esac
 
 mkdir -p build/demo
 results=build/demo/compare.json
-rm -f "$results" # so that an old record is not taken for a new one
+rm -f "$results" # an old record must not look like a new one
 echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
 build/farcull compare "$scene" --json "$results" || status=$?

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Tries every rasterizer that Debian's Mesa has without a GPU: the probes of `farcull doctor`, and what FAR
-# misses in the quick grid of the study radius, at the published radius and at the radius of the budget. One
-# driver, Mesa's noop, does nothing at all, so every probe of what it draws has to fail.
+# Tries every rasterizer of Debian's Mesa that needs no GPU. Runs the probes of `farcull doctor`. Counts the
+# pairs that FAR misses in the quick grid of the study `radius`, at the published radius and at the budget's
+# radius. Mesa's driver noop draws nothing, so every probe of drawing must fail on this driver.
 #   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/results/drivers.md
 #   bash experiments/drivers.sh zink noop    only these; prints the tables
 #     --probes           only the probes
 #     --program FARCULL  uses this program; installs and builds nothing
-#     --out DIR          default build/drivers; results of the same program that are there are kept
-# Exit status: 0; 1 a driver whose probes pass missed a pair at the budget's radius, or noop passed a probe;
-# 2 a run could not be made.
+#     --out DIR          default build/drivers; keeps results in DIR that the same program made
+# Exit status: 0 done; 1 a driver whose probes pass missed a pair at the budget's radius, or noop passed a
+# probe of drawing; 2 a run failed.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -76,7 +76,7 @@ unset "${!MESA_@}" "${!GALLIUM_@}" "${!LP_@}" "${!EGL_@}" "${!__EGL_@}" VK_DRIVE
 # Without this variable, Mesa does not use every Gallium driver for its software device.
 export LIBGL_ALWAYS_SOFTWARE=true
 
-# under DRIVER COMMAND...: runs the command with this driver. Each driver has a cache of verdicts.
+# under DRIVER COMMAND...: runs the command with this driver. Each driver has its own cache folder.
 under() {
   local -a variables
   read -ra variables <<<"${settings[$1]}"
@@ -84,7 +84,7 @@ under() {
 }
 sql() { sqlite3 -separator ' | ' :memory: "$@"; }
 
-# measure DRIVER: writes the file doctor.json or refused, and the folder results/ of the study.
+# measure DRIVER: writes doctor.json, or the file `refused` with the error. Writes the study to results/.
 measure() {
   local -i status=0
   local folder=$out/$1
@@ -114,7 +114,7 @@ measure() {
 }
 
 assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9)
-# noop passes the probe of A10, which is about threads of the driver and not about drawing.
+# Leaves out the probe of assumption A10. A10 is about threads of the driver, so noop passes this probe.
 drawn_probes="p.value ->> 'assumption' <> 'A10'"
 probes_table() {
   local driver json
@@ -140,7 +140,7 @@ broken_table() {
   echo '| driver | probe that fails | measured | bound | unit |'
   echo '|---|---|---|---|---|'
   for driver in "${chosen[@]}"; do
-    # noop is left out, since all its probes fail.
+    # Leaves out noop, whose probes of drawing all fail.
     if [[ ! -e $out/$driver/doctor.json || $driver == noop ]]; then continue; fi
     sql "SELECT '| $driver', (p.value ->> 'assumption') || ' ' || (p.value ->> 'name'),
       CASE WHEN p.value ->> 'samples' = 0 OR p.value ->> 'unit' = '' THEN 'broke off: ' || replace(p.value ->> 'note', '|', '/')
@@ -149,8 +149,8 @@ broken_table() {
       FROM json_each(readfile('$out/$driver/doctor.json'), '\$.probes') p WHERE NOT p.value ->> 'pass'"
   done
 }
-# For each of the two radii, the table has the colliding pairs that FAR missed, and the points that break the lemmas. Rows of the
-# native canvas and of device models are left out, since they are the same for all drivers.
+# For each of the two radii, the table has the colliding pairs that FAR missed, and the points that violate the lemmas. It leaves
+# out rows of the native canvas and of device models, which do not depend on the driver.
 drawn="device NOT IN ('cpu', 'native')"
 missed_table() {
   local driver store
@@ -211,7 +211,7 @@ for driver in "${chosen[@]}"; do
   fi
 done
 if [[ -n $whole && -z $probes_only ]] && ((status == 0)) && [[ -d $farcull_root/docs ]]; then
-  # Keeps the lines of the page down to the first that begins with "<!-- ".
+  # Keeps the top of the page, up to the first line that begins with "<!-- ".
   page=$farcull_root/docs/results/drivers.md
   { sed '/^<!-- /q' "$page"; echo; cat "$out/results.md"; } >"$out/page.md"
   cp "$out/page.md" "$page"

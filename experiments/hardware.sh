@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Measures all that farcull can on this machine's GPU, in one command and within two hours: the probes, missed pairs, times beside
-# other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of reliability, all studies and their
-# report. The most important parts come first. It installs what is missing and builds.
+# Measures farcull on this machine's GPU, by default in at most two hours: the probes, missed pairs, times of farcull and of other
+# libraries, times for up to 10^7 triangles, moving scenes, the test suite, experiments/reliability.sh, all studies and their
+# report. The most important parts come first. Installs missing packages and builds the program.
 #   bash experiments/hardware.sh
-#     --minutes N      how long measuring may take (default 120); parts left out or cut off are named
+#     --minutes N      time limit of the measurements (default 120); the output names parts without a result
 #     --device DEVICE  default hardware; software (Mesa's) or native for a trial
 #     --out DIR        default build/hardware-COMMIT-DEVICE
-# Call it again to go on after Ctrl-C, a kill or a budget that was spent: it does not measure a part again that is done, and
-# studies go on point by point. It makes one archive, DIR.tar.gz, and a page, DIR/NAME.md, where NAME is the name of the device.
-# For hardware it also puts the page in docs/results/. It stops when DIR has 20 GiB. Exit status: 0; 1 a pair was missed or a
-# check failed; 2 it could not begin; 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
+# To continue after Ctrl-C, a kill or the time limit, run the same command again. Finished parts are not measured again. Studies
+# continue at the next point. The script makes an archive, DIR.tar.gz, and a page, DIR/NAME.md, where NAME is the name of the
+# device. For hardware, it also puts the page in docs/results/. It stops when DIR has 20 GiB. Exit status: 0 done; 1 a pair was
+# missed or a check failed; 2 the script could not begin; 3 nothing failed, but some parts have no result; 130 or 143 interrupted.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -50,7 +50,7 @@ if [[ -e $out/commit && $(<"$out/commit") != "$version, $device" ]]; then
   refuse "$out is of $(<"$out/commit"); this is $version, $device; name another folder with --out"
 fi
 echo "$version, $device" >"$out/commit"
-# The scripts called below must build nothing: an edited file would make another program.
+# Keeps the scripts below from building: after an edit of the sources, they would build another program.
 export FARCULL_BUILT=yes DEVICE=$device XDG_CACHE_HOME=$out/cache
 
 began=$SECONDS
@@ -59,15 +59,15 @@ cores=$(nproc)
 most_disk=${FARCULL_HARDWARE_DISK:-20971520} # KiB
 child=''
 missing=() # parts without a result, with the reason
-spent=()   # parts that were not begun, since the budget was spent
+spent=()   # parts that did not begin, since no time was left
 say() { printf 'hardware: %s\n' "$*"; }
 
-# ---- one part ----
+# ---- running a part ----
 
 left() { echo $((budget - (SECONDS - began))); } # seconds
 
-# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call ran it. The command may take 1/SHARE of the time that
-# is left, but at least 10 minutes. steps/NAME gets the status and the seconds; logs/NAME.txt the output.
+# step NAME SHARE TEXT COMMAND...: runs the command unless an earlier call ran it. The time limit is 1/SHARE of the time left. If
+# this is below 10 minutes, the limit is 10 minutes or all the time left. Writes steps/NAME (status, seconds) and logs/NAME.txt.
 step() {
   local name=$1 text=$3 used
   local -i share=$2 limit start status=0
@@ -88,7 +88,7 @@ step() {
   say "$text (part $name, at most $limit s)"
   start=$SECONDS
   # The command runs in the background, since bash handles signals during `wait`, but not during a foreground
-  # command. A background command ignores Ctrl-C unless `env` restores the default. timeout passes its signals on.
+  # command. A background command ignores Ctrl-C unless `env` restores the default. `timeout` passes signals on to the command.
   env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
   child=$!
   wait "$child" || status=$?
@@ -115,13 +115,13 @@ stop() {
 trap 'stop 130' INT
 trap 'stop 143' TERM HUP
 
-# ---- the parts, the most telling first ----
+# ---- the parts, the most important first ----
 
 moving_scenes() {
   build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }'
 }
-safe() { tr -c 'a-zA-Z0-9\n' '-' <<<"$1"; } # a name for files
-bench() { # SHARE SCENE [OPTIONS]: times all peers, on all cores and on one core
+safe() { tr -c 'a-zA-Z0-9\n' '-' <<<"$1"; } # turns a text into a file name
+bench() { # SHARE SCENE [OPTIONS]: times farcull and the other libraries, on all cores and on one core
   local share=$1 name threads
   name=$(safe "${*:2}")
   for threads in "$cores" 1; do
@@ -169,7 +169,7 @@ if [[ ! -e $out/results/results.sqlite ]]; then
 elif ! "${FARCULL_PYTHON:-/usr/bin/python3}" -c 'import matplotlib, pandas' 2>/dev/null; then
   missing+=("report (of the studies): left out, python3-matplotlib and python3-pandas are not here; elsewhere: farcull report DIR/results")
 else
-  # The report takes a minute, and is made even if the budget is spent.
+  # The report takes a minute. It is made even if no time is left.
   budget=$((budget + 600))
   step report 1 "the report of the studies" build/farcull report "$out/results" --device "$device"
 fi

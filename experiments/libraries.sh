@@ -7,10 +7,10 @@
 #   bash experiments/libraries.sh --keep [DIR]    the small suite. One contestant runs at a time. At
 #                                                 the end the report is copied to docs/results
 #   bash experiments/libraries.sh [DIR]           as --keep, with the full suite. It takes an hour
-#                                                 and a half. A second run continues the first one
+#                                                 and a half. A second run continues the first run
 # With --quick and --keep, the large libraries VTK and Open3D are not installed.
-# DIR is the folder for the store and the report (default: build/libraries-COMMIT, then -quick or -keep). The exit status is that
-# of the study: 1 if a farcull method with a guarantee missed a pair or gave no answer.
+# DIR is the folder for the store and the report. Default: build/libraries-COMMIT, with -quick or -keep appended. The exit status
+# is that of the study: 1 if a farcull method with a guarantee missed a pair or gave no answer.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -51,7 +51,7 @@ if [[ $keep == yes && -e $out/results-1-of-2.sqlite ]]; then
 elif [[ $keep == yes || -e $out/results.sqlite ]]; then
   ask || status=$?
 else
-  # The two halves of the study run at the same time. Each half reads the suite. With set -m, each half
+  # The two halves of the study run at the same time. Both halves read the suite. With set -m, each half
   # is a process group, so that the trap below can interrupt it.
   [[ -e $out/suite/suite.txt ]] || build/farcull suite "$out/suite"
   running=()

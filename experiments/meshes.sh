@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded and unpacked, since installing
-# it needs root. Small systems would also not install the meshes, which are documentation.
+# Puts the meshes of Debian's package libcgal-demo into build/meshes/. Downloads and unpacks the package, since an installation
+# needs root. Minimal systems also leave out documentation when they install a package, and the meshes are documentation.
 # Exit status: 0: all meshes are there. 3: the meshes cannot be obtained, and stderr says why.
 # Other values: an error of the disk or of this script.
 set -euo pipefail
@@ -9,10 +9,10 @@ root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 exec </dev/null
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/sbin:/sbin"
 meshes=$root/build/meshes
-# The path, in the package, of the archive with the meshes. Installing the package writes /$inside.
+# The path of the archive of meshes in the package. If the package is installed, /$inside exists.
 inside=usr/share/doc/libcgal-dev/data.tar.gz
 
-# The number of triangles of each mesh. A file with another number is another mesh.
+# The number of triangles of each mesh. A file with another number is rejected.
 declare -A triangles=(
   [bunny00.off]=75408
   [ChineseDragon-10kv.off]=19994
@@ -47,7 +47,7 @@ all_in() {
 
 if all_in "$meshes"; then exit 0; fi
 
-# The work folder is on the same file system, so that one rename puts a complete mesh in place.
+# The work folder is on the file system of build/meshes/, so that a rename puts a complete mesh in place.
 mkdir -p "$root/build"
 # Removes folders of runs that were killed. No run lasts an hour.
 find "$root/build" -maxdepth 1 -name 'meshes.unpacking.*' -mmin +60 -exec rm -rf {} +

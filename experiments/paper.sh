@@ -5,7 +5,7 @@
 #   bash experiments/paper.sh --short [--out FILE.pdf]    makes build/paper-short.pdf of docs/paper.md, two pages
 #     --out      the name of the PDF. The figures are then drawn beside the PDF, and nothing is installed
 # Needs matplotlib, pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --out, the
-# script installs these packages. If a package is missing, it only draws the figures, and the exit status is 77.
+# script installs these packages. If a package is missing, the script only draws the figures and exits with status 77.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
@@ -58,7 +58,7 @@ if ! kpsewhich lmodern.sty >/dev/null; then
   exit 77
 fi
 
-export SOURCE_DATE_EPOCH=0 FORCE_SOURCE_DATE=1 # the same text gives the same PDF
+export SOURCE_DATE_EPOCH=0 FORCE_SOURCE_DATE=1 # makes the PDF reproducible
 work=$(mktemp -d)
 # shellcheck disable=SC2064  # the folder's name as it is now
 trap "rm -rf '$work'" EXIT
@@ -67,7 +67,7 @@ for figure in "$folder"/paper-*.svg; do
   rsvg-convert -f pdf -o "$work/figures/$(basename "${figure%.svg}").pdf" "$figure"
 done
 cd "$work"
-# Joins two pages into one text. The filter replaces the titles of the two pages.
+# Joins the two pages into one text. paper.lua replaces the titles of the pages.
 for page in reliability budget; do
   sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/$page.md"
   echo

@@ -19,11 +19,11 @@ matplotlib.rcParams.update({"font.family": "DejaVu Sans", "font.size": 11, "svg.
                             "text.parse_math": False})
 RED, BLUE, GREEN, GREY, DARK = "#bb3300", "#0077aa", "#228833", "#bbbbbb", "#223344"
 PIXEL = {"facecolor": "#ffee99", "edgecolor": "#aa8800", "linewidth": 1.5}
-# The radius of the budget (docs/budget.md, "snap" and "double") on a device with 4 subpixel bits, the fewest that OpenGL
-# allows, and on a device with 8. WANDER: how far a corner of a proxy may move on the first device.
+# Radii of the budget (docs/budget.md, "snap" and "double") in px, for devices with 4 and with 8 subpixel bits. OpenGL requires
+# at least 4. WANDER: largest distance in px that a corner of a proxy can move on the device with 4 bits.
 RADIUS_4_BITS, RADIUS_8_BITS, WANDER = 0.7969, 0.71402, 0.0884
 PUBLISHED = np.sqrt(0.5)  # the published radius, without its small term for depth, which a figure cannot show
-REACHING = np.array([[0.05, 0.03], [-2.6, -0.5], [-1.2, -1.9]])  # a triangle; its first corner is in the pixel [0, 1] x [0, 1]
+REACHING = np.array([[0.05, 0.03], [-2.6, -0.5], [-1.2, -1.9]])  # a triangle with its first corner in the pixel [0, 1] x [0, 1]
 
 
 def rectangle(points, radius):
@@ -117,7 +117,7 @@ def winding(corners, point):
 def coverage():
     figure, panel = reaching_sheet()
     exact, c = rectangle(REACHING, RADIUS_4_BITS), np.array([0.5, 0.5])
-    inward = np.roll(exact, 2, 0) - exact  # each corner moves towards the opposite one
+    inward = np.roll(exact, 2, 0) - exact  # each corner moves towards the opposite corner
     moved = exact + WANDER * inward / np.hypot(*inward.T)[:, None]
     for corner in exact:
         panel.add_patch(Circle(corner, WANDER, facecolor="#ffddbb"))
@@ -177,8 +177,8 @@ def entry_exit():
         panel.plot([centre, centre], inside[[0, -1]], "o-", color=RED, linewidth=3, markersize=5)
         if centre == 0.5:
             entry, exit_ = inside[[0, -1]]
-    polygon(panel, triangle[:, [0, 2]], edgecolor=DARK)  # the whole triangle is over the row
-    q = np.array([0.2, 0.62, 0.18]) @ triangle  # a point of the triangle in the pixel of that centre
+    polygon(panel, triangle[:, [0, 2]], edgecolor=DARK)  # the outline of the whole triangle, seen along y
+    q = np.array([0.2, 0.62, 0.18]) @ triangle  # a point of the triangle in the pixel with centre x = 0.5
     dot(panel, q[[0, 2]])
     words(panel, q[[0, 2]], "Q", 6, -16)
     words(panel, (0.5, entry), "entry", 6, -16, color=RED)
@@ -189,7 +189,7 @@ def entry_exit():
     return figure
 
 
-# Three objects of four segments, seen along y. A segment has x and depth of one end, then of the other end. Two pairs cross.
+# Three objects of four segments, seen along y. Each segment lists x and depth of both ends. Two pairs of segments cross.
 SCENE = np.array([[(1, 4, 7, 5), (10, 9, 16, 4), (19, 4, 25, 5), (28, 4, 35, 3)],
                   [(1, 8, 7, 9), (10, 4, 16, 9), (19, 12, 25, 8), (28, 15, 35, 16)],
                   [(1, 13, 7, 12), (10, 13, 16, 12), (19, 8, 25, 12), (28, 9, 35, 8)]], float)
@@ -215,7 +215,7 @@ def run_passes():
     """Returns the bits of all triangles after each pass. Ends when a round of two passes changes nothing."""
     boxes = [(np.minimum(o[:, 1], o[:, 3]).min(), np.maximum(o[:, 1], o[:, 3]).max()) for o in SCENE]
     bits = np.zeros((3, 4), int)
-    for o in range(3):  # a triangle whose depths meet no other object's box is not drawn
+    for o in range(3):  # a segment is not drawn if it overlaps no other object's box in depth
         for t, s in enumerate(SCENE[o]):
             if all(max(s[1], s[3]) < low or min(s[1], s[3]) > high for k, (low, high) in enumerate(boxes) if k != o):
                 bits[o, t] = BOTH
@@ -227,7 +227,7 @@ def run_passes():
             for o in order:
                 live = [t for t in range(4) if bits[o, t] != BOTH]
                 for t in live:
-                    if not (drawn[o][t][:, 1] >= nearest).any():  # in no column behind the stored depth
+                    if not (drawn[o][t][:, 1] >= nearest).any():  # in every column, the exit is in front of the stored depth
                         bits[o, t] |= bit
                 for t in (t for t in live if bits[o, t] != BOTH):
                     nearest = np.fmin(nearest, drawn[o][t][:, 0])
@@ -308,7 +308,7 @@ def main(case, folder):
         svg = io.StringIO()
         figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
         for_readers = f"<title>{html.escape(title)}</title>\n<desc>{html.escape(text)}</desc>"
-        out = svg.getvalue().replace(" \n", " ")  # a path in one line
+        out = svg.getvalue().replace(" \n", " ")  # keeps each path on one line
         out = re.sub(r"(<svg [^>]*>)", lambda m: m.group(1) + "\n " + for_readers, out, count=1)
         Path(folder, f"paper-{name}.svg").write_text(out.replace("'DejaVu Sans'", "'DejaVu Sans', Helvetica, Arial, sans-serif"))
 

@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# Tests on large inputs that no pair is missed. Each form prints a table, keeps its records in a folder of build/, and fails if a
-# pair is missed or an answer is wrong.
-#   bash experiments/reliability.sh [SCENE...]             build/reliability: compares FAR with both offsets with the method exact on
-#     the packaged scenes, at resolutions 64 to 2048; and with fewer resolutions on copies of the scenes: moved by 1e6 along the
-#     diagonal, scaled by 1e-6 and 1e6, and with a ground a thousand times larger. The column "at risk" counts pairs that are lost
-#     with 0.9 of the radius. About half an hour on two cores without a GPU.
-#   bash experiments/reliability.sh boxes [SCENE...]       build/reliability-boxes: boxes on packaged meshes, on needles and inside
-#     objects; the accounting decides every pair. --list prints all scenes.
-#   bash experiments/reliability.sh motion [SCENE...]      build/reliability-motion: boxes, i-collide and FAR with both offsets on
-#     every frame of every built-in scene that moves (FRAMES=100, METHODS); the accounting decides every pair of each frame. Hours.
-#   bash experiments/reliability.sh distances [SCENE...]   build/reliability-distances: distances of every built-in scene, with the
-#     second half of its objects moved away by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene. Each is compared with the truth in
-#     rational numbers (tests/experiments/method/distance_truth.h), to the bit. An hour or two on one core.
-# motion and distances skip runs that have a record of this commit; remove the folder to begin again. Without a GPU the native
-# canvas draws (on the cores of the CPU). DEVICE=software (or another value of --device) makes GL draw.
+# Tests on large inputs that no pair is missed. Each form of the command prints a table and writes records to a folder in build/.
+# The exit status is 1 if a pair is missed, an answer is wrong, or a run fails.
+#   bash experiments/reliability.sh [SCENE...]             build/reliability: compares FAR (both offsets) with the method exact on
+#     packaged scenes, at resolutions 64 to 2048. Also compares copies of the scenes at fewer resolutions. The copies are moved by
+#     1e6 along the diagonal, scaled by 1e-6, scaled by 1e6, or have a ground a thousand times larger. The column "at risk" counts
+#     pairs that are missed with 0.9 of the radius. Takes about half an hour on two cores without a GPU.
+#   bash experiments/reliability.sh boxes [SCENE...]       build/reliability-boxes: tests the method boxes on packaged meshes, on
+#     needles and on objects with themselves. The accounting tests every pair. --list prints all scenes.
+#   bash experiments/reliability.sh motion [SCENE...]      build/reliability-motion: tests boxes, i-collide and FAR (both offsets)
+#     on every frame of every built-in scene that moves (variables FRAMES=100, METHODS). The accounting tests every pair. Hours.
+#   bash experiments/reliability.sh distances [SCENE...]   build/reliability-distances: computes distances in each built-in scene,
+#     after moving half of its objects by 0, 1e-12, 1e-3, 1 and 1e3 diagonals of the scene. Each distance must equal, to the bit,
+#     the exact result in rational numbers (tests/experiments/method/distance_truth.h). Takes one or two hours on one core.
+# motion and distances skip runs that have a record of this commit. Remove the folder to start again. Without a GPU, the cores of
+# the CPU draw. DEVICE=software (or another value of --device) selects a device.
 set -euo pipefail
 
 form=meshes
@@ -22,7 +22,7 @@ case ${1-} in boxes | motion | distances)
   shift
   ;;
 esac
-# The scenes of the form `boxes`, with their options.
+# The default scenes of the form `boxes`, with their options.
 boxes_runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"
@@ -47,7 +47,7 @@ out=build/reliability
 if [[ $form != meshes ]]; then out+=-$form; fi
 mkdir -p "$out"
 failed=()
-# Records have the commit in their names, so that records of another commit are not reused.
+# The names of records contain the commit, so that records of another commit are not reused.
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 device=(${DEVICE:+--device "$DEVICE"})
 
@@ -58,7 +58,7 @@ mesh_scene() {
     scene=$1$copy resolutions=128,1024 methods=far,exact
     if [[ -z $copy ]]; then resolutions=64,128,256,512,1024,2048 methods=far,cullide,exact; fi
     for phase in objects triangles; do
-      # After boxes of triangles only few triangles are drawn, so two resolutions are enough.
+      # The broad phase over triangles leaves few triangles to draw, so two resolutions are enough.
       if [[ $phase == triangles ]]; then resolutions=128,1024 methods=far,exact; fi
       build/farcull compare "$scene" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
         --broad-phase $phase "${device[@]}" --repeat 1 --json "$out/$scene.$phase.json" || failed+=("$scene")
@@ -66,7 +66,7 @@ mesh_scene() {
   done
 }
 
-# boxes_run SCENE [OPTIONS]
+# boxes_run SCENE [OPTIONS]: runs the method boxes on the scene and prints a row.
 boxes_run() {
   local record="$out/${*// /_}"
   record="${record// /_}.json"
@@ -79,7 +79,7 @@ boxes_run() {
       }' || failed+=("$*")
 }
 
-# moving_scene SCENE: runs each of the METHODS on the scene and prints its row. A method may have options (far --offset exact).
+# moving_scene SCENE: runs each of the METHODS on the scene and prints a row. A method can have options (far --offset exact).
 moving_scene() {
   local frames=${FRAMES:-100} method record
   while read -r method; do
@@ -97,7 +97,7 @@ moving_scene() {
   done < <(tr , '\n' <<<"${METHODS:-boxes,i-collide,far,far --offset exact}")
 }
 
-# distances_of SCENE: prints distances after half of the objects moved away. Reuses the record of an earlier run if there is one.
+# distances_of SCENE: prints distances after half of the objects were moved. Reuses records of earlier runs.
 distances_of() {
   local diagonals record
   for diagonals in 0 1e-12 1e-3 1 1e3; do
@@ -107,9 +107,9 @@ distances_of() {
     elif build/tests/farcull_distance_reliability "$1" "$diagonals" | tee "$record.part"; then
       mv "$record.part" "$record"
     else
-      failed+=("$1 $diagonals") # its record stays unfinished, and is not reused
+      failed+=("$1 $diagonals") # the record stays unfinished, and is not reused
     fi
-    # One object cannot be moved apart.
+    # A scene of one object has no half to move, so only one run is needed.
     if [[ $diagonals == 0 ]] && grep -q '| itself |' "$record" 2>/dev/null; then break; fi
   done
 }

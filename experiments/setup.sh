@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Shared by the scripts in experiments/ and tests/: functions that install packages and build.
+# Functions that install packages and build. The scripts in experiments/ and tests/ use them.
 # A script sources this file, then calls farcull_setup for the packages and farcull_build for the
 # program. `bash experiments/setup.sh` by itself installs the packages and does nothing else.
 # The script must work where there is nothing but Debian and a checkout: no sudo, no git, no terminal, a
@@ -10,37 +10,37 @@ farcull_root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 
 # If stdin were closed, the next file that a program opens would become its stdin.
 exec </dev/null
-# dpkg needs PATH in the environment, including the sbin folders. `su` and cron leave these out.
+# dpkg needs PATH in the environment, including the sbin folders. `su` and cron leave out the sbin folders.
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin"
 
 # Packages that the program needs, and that CMake looks for when it configures the tests.
 farcull_packages=(
-  # tools
+  # tools for building
   g++ cmake ninja-build pkg-config git
   # EGL and GL. A context without a window on Mesa's software device needs libegl1 with libegl-mesa0
   # (its vendor), libgl1-mesa-dri (llvmpipe itself) and libgl1 (epoxy opens libOpenGL.so.0 or
   # libGL.so.1 by name). The last two are named here because the program is not linked to them.
   libegl-dev libepoxy-dev libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri
-  # exact predicates, linear algebra, tests, command line, records
+  # exact predicates, linear algebra, SIMD, tests, command line, JSON, formatted text
   libcgal-dev libboost-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
   # compressed meshes
   zlib1g-dev
-  # results, pictures, figures
+  # the database of results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpango1.0-dev libcairo2-dev fonts-dejavu-core
-  # the report of what was measured
+  # the report of measurements
   python3-matplotlib python3-pandas
-  # pages of pictures; the build works without this package
+  # web pages with three-dimensional pictures; the build works without this package
   libjs-three
   # the Python module; the build works without these packages
   python3-dev pybind11-dev python3-numpy
   # libraries that farcull bench compares with; the build works without these packages
   libfcl-dev libembree-dev libbullet-dev libode-dev
 )
-# Packages that only tests need. A test whose package is missing is skipped, and names the package. gappa proves the bounds of
+# Packages that only tests need. A test that lacks its package is skipped, and names the package. gappa proves the bounds of
 # rounding errors. Tests of the Python module use pytest and hypothesis, and install the module into a virtual environment.
 farcull_test_packages=(gappa python3 sqlite3 python3-pytest python3-hypothesis python3-venv python3-pip)
-# Packages of tests that are labelled "rare", 300 MB: for pages in a browser, LaTeX of the report, and the paper as a PDF.
+# Packages (300 MB) of tests that are labelled "rare". These tests open pages in a browser, and make PDFs with LaTeX.
 farcull_rare_packages=(chromium poppler-utils texlive-latex-base pandoc texlive-latex-recommended lmodern librsvg2-bin)
 
 # Prints the packages of farcull_packages that are not completely installed, one per line.
@@ -69,9 +69,9 @@ farcull_install() {
   "${apt_get[@]}" install --yes --no-install-recommends "$@"
 }
 
-# Installs the missing packages of farcull_packages. If that is impossible, prints what to do, and returns
+# Installs the missing packages of farcull_packages. If installing is impossible, prints what to do, and returns
 # 2. A script that needs more packages first appends them to farcull_packages. Nothing is installed if
-# FARCULL_BUILT is set, since the calling script has built already.
+# FARCULL_BUILT is set, since the program is built already.
 farcull_setup() {
   if [[ -n ${FARCULL_BUILT-} ]]; then return 0; fi
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
@@ -91,11 +91,11 @@ farcull_setup() {
   mkdir -p "$farcull_root/build" || return 2
   echo "setup: installing ${#missing[@]} packages: ${missing[*]}"
   if ! farcull_install "${missing[@]}" >"$log" 2>&1; then
-    # The network gets a pause, and dpkg completes an installation that was killed earlier. Then the second attempt follows.
+    # Waits in case the network fails briefly. dpkg completes an interrupted installation. Then the second attempt follows.
     sleep 5
     farcull_as_root dpkg --configure -a >>"$log" 2>&1 || true
     if ! farcull_install "${missing[@]}" >>"$log" 2>&1; then
-      # The first messages name the causes, such as a full disk. Later messages are only consequences.
+      # Prints the first messages, which name the causes, such as a full disk. Later messages are consequences.
       awk '/^[WE]:/ && !seen[$0]++ && ++n <= 8' "$log" >&2
       printf '%s\n' "setup: installing failed twice (apt's output: build/setup.log). By hand:" \
         "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
@@ -126,7 +126,7 @@ farcull_jobs() {
   printf '%s\n' $((jobs > 1 ? jobs : 1))
 }
 
-# Configures build/ as Release with the tests, unless build/ is configured so. CMake itself notices a CMakeLists.txt that changed.
+# Configures build/ as Release with the tests, unless this is done already. CMake itself notices a changed CMakeLists.txt.
 farcull_configure() {
   local build=$farcull_root/build
   local -a how=()

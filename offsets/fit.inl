@@ -1,7 +1,7 @@
-// Fits the offsets' solids and rectangles to the corners of a primitive, in doubles. This file compiles for scalars, where a
-// primitive may have any number of corners, and for lanes, each of which holds one triangle. FAR_NEAREST rounds to float;
-// dvec3, min, max, abs and sqrt are those of GLSL, and offsets/rounding.h has the constants. Include this file as
-// offsets/offsets.cpp and offsets/lanes.cpp do.
+// Fits solids and rectangles to the corners of a primitive, in double. The file compiles for
+// scalars (any number of corners) and for SIMD lanes (one triangle per lane). The including file
+// provides dvec3, min, max, abs and sqrt as in GLSL, and FAR_NEAREST, which rounds to float.
+// offsets/rounding.h has the constants kFit...
 
 // ---- vectors ----
 
@@ -25,12 +25,12 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 
 // ---- rounding outward ----
 
-// Returns a float at or above x, at most two floats above the least such float. x + |x| 2^-24 is at least half a unit
-// in the last place above x, and rounding to nearest lowers it by at most half a unit. kFitHalfUlp also covers the
-// rounding of these doubles, and kFitSubnormal covers subnormal floats.
+// Returns a float at or above x, at most two floats above the least such float. x + |x| 2^-24 is at
+// least half a unit in the last place above x. Rounding to nearest lowers the sum by at most half a
+// unit. kFitHalfUlp also covers rounding in double; kFitSubnormal covers subnormals.
 FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
-// fit_below() returns a float at or below z - radius. fit_above() returns a float at or above z + radius.
+// fit_below() returns a float <= z - radius. fit_above() returns a float >= z + radius.
 FAR_KERNEL double fit_below(double z, double radius) {
   return fit_down(z - radius - kFitDepth * (abs(z) + radius));
 }
@@ -38,7 +38,7 @@ FAR_KERNEL double fit_above(double z, double radius) {
   return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
-// Sets depths[0] to a float <= z and depths[1] to a float >= z, for the z of every point of the fattened primitive.
+// Sets depths to a lower and an upper bound of z in the fattened primitive. Both are floats.
 FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* depths) {
   double lowest = p[0].z;
   double highest = p[0].z;
@@ -52,14 +52,14 @@ FAR_KERNEL void fit_depths(const dvec3* p, int count, double radius, double* dep
 
 // ---- the proxy's rectangle ----
 
-// Fits a rectangle inside |x| <= bound_x, |y| <= bound_y to the image of the points fattened by a disc. The rectangle lies
-// along the longest image of an edge if it then fits, which is tight for slivers. Otherwise it is aligned with the axes and
-// cut off at the bounds. `corners`: x, y of four corners, counterclockwise, rounded to the nearest float. The error budget
-// has a term "input" for this rounding.
+// Computes a rectangle within |x| <= bound_x, |y| <= bound_y around the image of the points,
+// fattened by a disc. Prefers a rectangle parallel to the longest edge of the image. If this
+// rectangle exceeds the bounds, takes an axis-aligned rectangle, cut off at the bounds. `corners`:
+// x, y of four corners, counterclockwise, rounded to nearest (term "input" of the error budget).
 FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double bound_x, double bound_y, double* corners) {
   double ux = 1.0;
   double uy = 0.0;
-  double longest2 = 1e-200;  // shorter edges count as points
+  double longest2 = 1e-200;  // squared length; a shorter edge counts as a point
   for (int i = 0; i < count; ++i) {
     const dvec3 e = fit_sub(p[(i + 1) % count], p[i]);
     const double length2 = e.x * e.x + e.y * e.y;
@@ -116,12 +116,12 @@ FAR_KERNEL void fit_rectangle(const dvec3* p, int count, double radius, double b
 
 // ---- the oriented box ----
 
-// Chooses the box's directions: the longest edge, the perpendicular from it to the farthest point, and their normal.
-// Any directions are sound, since the extents are measured afterwards; these directions make the box tight.
+// Chooses three directions: the longest edge, the perpendicular from this edge to the farthest
+// point, and their normal. Any directions are sound, since the extents are measured later.
 FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   dvec3 along = {1.0, 0.0, 0.0};
   dvec3 base = p[0];
-  double longest2 = 1e-200;  // shorter edges count as points
+  double longest2 = 1e-200;  // squared length; a shorter edge counts as a point
   for (int i = 0; i < count; ++i) {
     const dvec3 e = fit_sub(p[(i + 1) % count], p[i]);
     const double length2 = fit_dot(e, e);
@@ -136,13 +136,13 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   for (int i = 0; i < count; ++i) {
     const dvec3 d = fit_sub(p[i], base);
     dvec3 off = fit_sub(d, fit_scaled(fit_dot(along, d), along));
-    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // removes the rest along `along`
+    off = fit_sub(off, fit_scaled(fit_dot(along, off), along));  // orthogonalizes a second time
     const double distance2 = fit_dot(off, off);
     const FAR_BOOL farther = distance2 > farthest2;
     across = fit_choose(farther, off, across);
     farthest2 = FAR_SELECT(farther, distance2, farthest2);
   }
-  // For a needle or a point, any direction across is sound. The axis with the smallest component of `along` gives one.
+  // If the points are nearly collinear, any perpendicular of `along` is sound as `across`.
   const FAR_BOOL thin = farthest2 <= max(0x1p-80 * longest2, 1e-200);
   const double ax = abs(along.x);
   const double ay = abs(along.y);
@@ -158,7 +158,7 @@ FAR_KERNEL void fit_directions(const dvec3* p, int count, dvec3* rows) {
   rows[2] = fit_cross(along, across);
 }
 
-// Sets `solid` to the box as obb.glsl reads it: 5 x 4 numbers, all of them floats.
+// Sets `solid` to the box: the 5 x 4 numbers that obb.glsl reads, all of them floats.
 FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid) {
   dvec3 rows[3];
   fit_directions(p, count, rows);
@@ -189,8 +189,8 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
       reach = max(reach, abs(fit_dot(n, d)));
       size = max(size, (abs(n.x) * abs(d.x) + abs(n.y) * abs(d.y)) + abs(n.z) * abs(d.z));
     }
-    // A difference, a product and two sums give `reach` an error under 5 * 2^-53 of `size`. |n| is at most (1 + |n|^2) / 2.
-    // kFitBox is larger than the relative rounding errors of `reach` and of `length`.
+    // `reach` has an error below 5 * 2^-53 * size. |n| is at most (1 + |n|^2) / 2. kFitBox is
+    // larger than the relative rounding errors of `reach` and of `length`.
     const double length = (0.5 + 0.5 * fit_dot(n, n)) * (1.0 + kFitBox);
     solid[4 * i + 4] = n.x;
     solid[4 * i + 5] = n.y;
@@ -205,8 +205,8 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
 
 // ---- the exact offset ----
 
-// Sets `solid` to the triangle p fattened by a ball, as minkowski.glsl reads it: 5 x 4 numbers, all of them floats. The
-// corners are rounded relative to a float centre, so the radius grows by the largest displacement of a corner.
+// Sets `solid` to the triangle p fattened by a ball: the 5 x 4 numbers that minkowski.glsl reads.
+// Rounding moves the corners, so the radius grows by the largest displacement.
 FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
   const dvec3 lo = {min(min(p[0].x, p[1].x), p[2].x), min(min(p[0].y, p[1].y), p[2].y), min(min(p[0].z, p[1].z), p[2].z)};
   const dvec3 hi = {max(max(p[0].x, p[1].x), p[2].x), max(max(p[0].y, p[1].y), p[2].y), max(max(p[0].z, p[1].z), p[2].z)};
@@ -231,8 +231,8 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
     solid[4 * i + 6] = v.z;
     solid[4 * i + 7] = 0.0;
   }
-  // The second term covers the rounding of the subtraction, 2^-53 of |d| per axis. The third term covers components below
-  // 2^-511, whose squares are less than a normal double.
+  // Second term: rounding of the subtraction, 2^-53 |d| per axis. Third term: components below
+  // 2^-511, whose squares are below the normal doubles.
   const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
   solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));
   solid[11] = depths[1];

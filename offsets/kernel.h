@@ -1,4 +1,4 @@
-// Turns a kernel that was compiled as C++ into the functions of a SolidProgram.
+// Adapts a kernel, a GLSL function solid_interval() compiled as C++, to the types of SolidProgram.
 #pragma once
 
 #include "core/base/glsl_shim.h"
@@ -12,7 +12,7 @@ V4 vec4_of(const std::array<float, 4>& s) {
   return {s[0], s[1], s[2], s[3]};
 }
 
-/// Calls the kernel, a solid_interval() of GLSL, with floats.
+/// Calls a kernel that was compiled with float.
 template <auto Kernel>
 bool kernel_interval(float cx, float cy, const Solid& s, float& entry, float& exit) {
   using glsl::vec4;
@@ -20,8 +20,8 @@ bool kernel_interval(float cx, float cy, const Solid& s, float& entry, float& ex
                 vec4_of<vec4>(s[3]), vec4_of<vec4>(s[4]), entry, exit);
 }
 
-/// Calls a kernel that was compiled with the number type Worst. Returns false if the line misses
-/// the solid under some permitted rounding. Otherwise gives the latest entry and the earliest exit.
+/// Calls a kernel compiled with Worst, which tracks all rounding that GLSL permits. Returns false
+/// if some rounding gives a miss. Otherwise sets the latest entry and the earliest exit.
 template <auto Kernel>
 bool kernel_interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   using glsl_worst::vec4;

@@ -1,4 +1,4 @@
-// Compiles obb.glsl, minkowski.glsl and fit.inl for the vector lanes of this processor.
+// Compiles obb.glsl, minkowski.glsl and fit.inl for SIMD, with the library Highway.
 #include <array>
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,5 @@
-// Functions of the offsets for the vector lanes of this processor: SolidProgram::draw_native,
-// SolidProgram::lines_native and Fattener::fatten_inside.
+// SIMD functions of the offsets: values for SolidProgram::draw_native, SolidProgram::lines_native
+// and Fattener::fatten_inside.
 #pragma once
 
 #include "core/canvas/fatten.h"

@@ -11,7 +11,7 @@
 // roundings at each use. So every variable that holds a normal is precise, and so are the parameters through which a function
 // returns a normal (docs/budget.md, "One normal").
 
-// An upper bound of the solid's extent along n, from the origin m.
+// Returns an upper bound of n . (p - m) over all points p of the solid.
 FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   FAR_PRECISE float a0 = abs(n.x * v0.x) + abs(n.y * v0.y) + abs(n.z * v0.z);
   FAR_PRECISE float a1 = abs(n.x * v1.x) + abs(n.y * v1.y) + abs(n.z * v1.z);
@@ -25,12 +25,12 @@ FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   FAR_PRECISE float length = (0.5f + 0.5f * squared) * kUp * kUp;
   FAR_PRECISE float ball = v0.w * length * kUp;
   FAR_PRECISE float sum = max(max(q0, q1), q2) + e + ball;
-  FAR_PRECISE float extent = sum + abs(sum) * kEightU;  // a variable, because a return value is not precise
+  FAR_PRECISE float extent = sum + abs(sum) * kEightU;  // a return value cannot be `precise`
   return extent;
 }
 
-// Cuts [lo, hi] with the solid's halfspace of normal n. Returns false if the line misses the halfspace. A normal far
-// from unit length cuts nothing.
+// Cuts [lo, hi] with the solid's halfspace of normal n. Returns false if the line misses the
+// halfspace. If |n|^2 is not between 1/4 and 4, nothing is cut.
 FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach, FAR_INOUT(float) lo,
                    FAR_INOUT(float) hi) {
   float squared = n.x * n.x + n.y * n.y + n.z * n.z;
@@ -43,8 +43,8 @@ FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v
   return !usable || hit;
 }
 
-// Finds the line's first contact (sign -1) or last contact (sign 1) with the capsule about the edge a, b. If this contact
-// is farther out than the contact in n, its normal replaces n, and its z replaces n.w.
+// Finds the line's first (sign -1) or last (sign 1) contact with the capsule around edge a, b. n
+// stores the outermost contact so far: x, y, z the normal, w the z coordinate.
 FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -76,8 +76,8 @@ FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECIS
   n.w = FAR_SELECT(beyond, z, n.w);
 }
 
-// If the squared distance of edge a, b from the pixel centre in the image is less than n.w, this distance replaces n.w, and
-// the direction from the edge to the pixel centre replaces n.
+// n stores the edge nearest to the pixel centre in the image: x, y, z the direction from edge to
+// centre, w the squared distance. Replaces n if edge a, b is nearer.
 FAR_KERNEL void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
@@ -134,7 +134,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   plane.z = -plane.z;
   hit = far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit) && hit;
 
-  // Cuts pixels beside the triangle's image: the normal is the direction from the image to the pixel centre.
+  // Cuts beside the triangle's image: the normal points from the image to the pixel centre.
   FAR_PRECISE vec4 aside = s4;
   aside.x = 0.0f;
   aside.y = 0.0f;
@@ -147,7 +147,7 @@ FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, v
   aside.y = FAR_FIXED(aside.y);
   hit = far_touch(d, mz, aside, s1, s2, s3, reach, entry, exit) && hit;
 
-  // Cuts at the first and the last contact with the spheres and cylinders.
+  // Cuts with the normals of the first and last contact with the capsules around the edges.
   FAR_PRECISE vec4 first = s4;
   first.x = 0.0f;
   first.y = 0.0f;

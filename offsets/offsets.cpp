@@ -1,4 +1,4 @@
-// Compiles fit.inl for scalars. Then defines each offset: its kernel with floats, its kernel with
+// Compiles fit.inl for scalars. Then defines each offset: its kernel with float, its kernel with
 // the number type Worst, and its fatteners.
 #include "offsets/offsets.h"
 
@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = std::tuple_size_v<decltype(Patch::corners)>;
 
-// The points in the form that fit.inl takes.
+// The points as an array for fit.inl.
 struct Points {
   explicit Points(std::span<const Vec3> from) : count(static_cast<int>(from.size())) {
     if (from.empty() || from.size() > kMostPoints) throw std::logic_error("fit: too many points");
@@ -102,8 +102,8 @@ void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, 
       {proxy_rectangle(patch.points(), radius, bounds), obb_of(patch.points(), radius)});
 }
 
-// Draws the closed box as twelve triangles. Corners are rounded to nearest, so this path gives no
-// guarantee.
+// Draws the surface of the box as twelve triangles. The corners are rounded to nearest, so this
+// path gives no guarantee.
 void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawables& out) {
   const Solid box = obb_of(patch.points(), radius);
   const auto corner = [&box](int bits) {
@@ -172,9 +172,9 @@ void fatten_minkowski(const Patch& patch, double radius, const ProxyBounds& boun
   }
 }
 
-// Computes the interval with this machine's floats and with the number type Worst. At each end,
-// takes the bound that makes the interval narrower. GLSL permits both roundings. Worst alone may
-// choose other normals and give a wider interval.
+// Computes the interval with float and with the number type Worst, and returns the intersection.
+// GLSL permits the rounding of both. Worst alone may give a wider interval, since Worst may choose
+// other normals.
 bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   float first = 0, last = 0;
   if (!kernel_interval<glsl::minkowski::solid_interval>(cx, cy, s, first, last) ||

@@ -13,26 +13,26 @@ namespace farcull {
 // so the box contains the Minkowski sum of the primitive and a ball (Govindaraju, Lin, Manocha
 // 2004, section 4.3: "bounding OBBs").
 
-/// The shader function offsets/obb.glsl evaluates the box in each pixel. This is the reliable path.
+/// Returns the reliable fattener: offsets/obb.glsl evaluates the box in each pixel.
 Fattener obb_fattener();
-/// The fattener draws the box as a closed surface of twelve triangles with interpolated depth. This
-/// is the published path, for comparison.
+/// Returns the published fattener, for comparison: the box is drawn as a closed surface of twelve
+/// triangles with interpolated depth.
 Fattener obb_surface_fattener();
 
-// The exact offset: the Minkowski sum of a triangle and a ball. Its surface is made of three
-// cylinders along the edges, three spheres and two shifted triangles (Govindaraju, Lin, Manocha
-// 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates the offset in each
-// pixel.
+// The exact offset is the Minkowski sum of a triangle and a ball. Its surface consists of parts of
+// three cylinders around the edges, three spheres and two shifted triangles (Govindaraju, Lin,
+// Manocha 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates the offset in
+// each pixel.
 
-/// A primitive with more than three corners after clipping is drawn as a fan of triangles. Each
-/// triangle is fattened. The union of these solids contains the fattened polygon.
+/// Clipping can give a primitive more than three corners. Such a polygon becomes a fan of
+/// triangles. The union of the fattened triangles contains the fattened polygon.
 Fattener minkowski_fattener();
 
-// Functions that fit rectangles and solids to primitives in double (offsets/fit.inl).
+// The next functions fit rectangles and solids to primitives in double (offsets/fit.inl).
 
-/// Returns the corners of a rectangle inside `bounds`. The rectangle contains the image of
-/// `points`, fattened by a disc of `radius` px. It lies along the longest edge if it then fits into
-/// `bounds`. Otherwise it is aligned with the axes and cut off at `bounds`, which are at least a
+/// Returns the corners of a rectangle inside `bounds` that contains the image of `points`, fattened
+/// by a disc of `radius` px. The rectangle is parallel to the longest edge if such a rectangle
+/// fits. Otherwise the rectangle is axis-aligned and cut off at `bounds`, which are at least a
 /// pixel outside the window. The corners are rounded to the nearest floats. The term "input" of the
 /// error budget covers this rounding.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,

@@ -8,17 +8,17 @@
 // u = 2^-23. The relative error is at most u for an operation in any rounding mode, and 2.5 u for a division (GLSL 4.50, 4.7.1;
 // |divisor| >= 2^-20, quotient < 2^126). Results below 2^-126 may be flushed. Constants: docs/budget.md, "The oriented box".
 
-#ifndef FAR_WIDEN  // 0 in the test that shows what happens without the widening
+#ifndef FAR_WIDEN  // tests set 0 to show that the widening is needed
 #define FAR_WIDEN 1.0f
 #endif
 FAR_CONSTANT kEightU = FAR_WIDEN * 9.5367431640625e-7f;  // 8 u, a power of two, so exact
 FAR_CONSTANT kFourU = FAR_WIDEN * 4.76837158203125e-7f;
 FAR_CONSTANT kUp = 1.0f + kEightU;
-FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;  // results below 2^-126 may be flushed to zero
+FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;  // covers results below 2^-126 that are flushed to zero
 FAR_CONSTANT kParallel = 9.5367431640625e-7f;  // 2^-20
 
-// Cuts the interval [lo, hi] of the line with one slab. Returns false if the line misses the slab. m: the slab's centre.
-// d = c - m.xy for the pixel centre c; mz = m.z. reach: at least |z - m.z| for every point of the solid.
+// Cuts [lo, hi] of the line with a slab of centre m. Returns false if the line misses the slab.
+// mz = m.z; d = c - m.xy for pixel centre c; reach: upper bound of |z - m.z| in the solid.
 FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = slab.x * d.x;
   FAR_PRECISE float sy = slab.y * d.y;
@@ -46,8 +46,8 @@ FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT
   return FAR_BOOL(true);
 }
 
-// Cuts the interval [lo, hi] of the line with a halfspace n . (x - m.x, y - m.y, z - m.z) <= h. Returns false if the line
-// misses the halfspace.
+// Cuts the interval [lo, hi] of the line with the halfspace n . (x - m) <= h. Returns false if the
+// line misses the halfspace. d, mz, reach: as for far_slab().
 FAR_KERNEL FAR_BOOL far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = n.x * d.x;
   FAR_PRECISE float sy = n.y * d.y;

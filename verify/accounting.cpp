@@ -1,16 +1,16 @@
 // Joins a tree of boxes with itself, to find the pairs of triangles whose boxes overlap. The upper
 // levels of the tree divide the set of objects. The lower levels divide the triangles of one
-// object. So two disjoint subtrees hold either different objects, or triangles of one object.
-// Subtrees of one object are joined iff the object is `self`. If the boxes of two nodes are far
-// enough apart, all pairs of the two nodes are counted at once. The division affects the speed, not
-// the answer.
+// object. So two disjoint subtrees hold either different objects, or triangles of one object. Two
+// subtrees of one object are joined iff the object is `self`. If the boxes of two nodes are far
+// enough apart, all pairs of the two nodes are counted at once. The way of dividing affects the
+// speed, not the result.
 //
-// A box has the minima and maxima of the coordinates. A gap between boxes is a difference computed
-// in double. Rounding is monotone: if the rounded gap exceeds the clearance, so does the exact gap.
+// The bounds of a box are minima and maxima of coordinates. A gap between boxes is a difference
+// computed in double. Rounding is monotone: if the rounded gap exceeds the clearance, the exact gap
+// does too.
 //
-// The classes of Accounting would still add up if the join lost one pair and counted another pair
-// twice. So the certificate's BoxPairs enumerates the pairs with overlapping boxes again, and the
-// two sets of pairs are compared.
+// If the join lost one pair and counted another twice, the classes of Accounting would still add
+// up. So BoxPairs enumerates the pairs with overlapping boxes again, and the sets are compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -47,9 +47,9 @@ PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
 
 namespace {
 
-// At most this many triangles are in a leaf.
+// Maximum number of triangles in a leaf.
 constexpr std::uint32_t kLeafSize = 4;
-// At most this many pairs are decided at a time, so that the list of all overlaps is never stored.
+// Maximum number of pairs decided at a time, so that the list of all overlaps is never stored.
 constexpr std::size_t kChunk = 1 << 18;
 constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -68,7 +68,7 @@ void include(Bounds& bounds, const Bounds& other) {
 }
 
 /// False iff a gap between the boxes along an axis, computed in double, exceeds the clearance. For
-/// clearance 0 the answer is exact, since the difference of unequal doubles is never 0.
+/// clearance 0 the result is exact, since the difference of unequal doubles is never 0.
 bool meet(const Bounds& a, const Bounds& b, double clearance) {
   for (int axis = 0; axis < 3; ++axis) {
     if (b.lo[axis] - a.hi[axis] > clearance || a.lo[axis] - b.hi[axis] > clearance) return false;
@@ -91,17 +91,17 @@ struct Node {
   Bounds bounds;
   std::uint32_t first = 0;  // index into Tree::order_
   std::uint32_t count = 0;
-  std::uint32_t left = kNone;  // kNone in a leaf
+  std::uint32_t left = kNone;  // kNone for a leaf
   std::uint32_t right = kNone;
-  bool within = false;  // true if two triangles of this node may be a pair that counts
+  bool within = false;  // true if the node can hold both triangles of a pair that counts
 };
 
-/// Moves the half of the items with the smaller centres to the front, along the axis on which the
-/// centres spread most. Returns the number of these items.
+/// Chooses the axis along which the centres spread most. Moves the half of the items with the
+/// smaller centre coordinates to the front. Returns the number of these items.
 std::size_t divide(std::span<std::uint32_t> items, const std::vector<Bounds>& bounds) {
   const auto centre = [&](std::uint32_t item, int axis) {
     return bounds[item].lo[axis] / 2 +
-           bounds[item].hi[axis] / 2;  // each is halved, since lo + hi may overflow
+           bounds[item].hi[axis] / 2;  // two divisions, since lo + hi may overflow
   };
   int widest = 0;
   double spread = -1;
@@ -134,7 +134,7 @@ class Tree {
     if (!objects.empty()) root_ = build_objects(objects);
   }
 
-  /// Calls visit(a, b), a and b in any order, for each pair that counts and whose bounds meet.
+  /// Calls visit(a, b) for each pair that counts and whose bounds meet, with a and b in any order.
   /// Returns the number of pairs that count and whose bounds do not meet.
   std::uint64_t join(auto& visit) const {
     return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
@@ -223,8 +223,8 @@ class Tree {
   std::uint32_t root_ = kNone;
 };
 
-/// The ignored pairs of objects. Does not use IgnoredObjects of core/scene/scene, since the culling
-/// code does.
+/// The ignored pairs of objects. Does not use IgnoredObjects of core/scene/scene, since culling
+/// uses that class.
 class Ignored {
  public:
   Ignored(const Scene& scene, std::span<const ObjectPair> pairs)
@@ -249,7 +249,7 @@ class Ignored {
   std::uint64_t triangles_ = 0;
 };
 
-/// The sorted kept pairs with a lookup: the kept pairs (a, b) of a triangle a have the indices
+/// The sorted kept pairs, with an index: the kept pairs (a, b) of a triangle a are at positions
 /// starts_[a] to starts_[a + 1] - 1.
 class Kept {
  public:
@@ -282,9 +282,9 @@ class Kept {
   std::vector<std::size_t> starts_;
 };
 
-/// Returns the number of pairs that count: n m for any two objects of n and m triangles, and
-/// n (n - 1) / 2 for each object that is `self`. The number is below 2^63, since n and m have 32
-/// bits.
+/// Returns the number of pairs that count: n m for any two objects with n and m triangles, and
+/// n (n - 1) / 2 for each object that is `self`. The number is below 2^63, since triangle indices
+/// have 32 bits.
 std::uint64_t pairs_that_count(const Scene& scene) {
   std::uint64_t before = 0;
   std::uint64_t pairs = 0;
@@ -316,14 +316,14 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   require_clearance("account", clearance);
   Accounting result;
   result.pairs_total = pairs_that_count(scene);
-  std::vector<std::uint32_t> owner;  // the object of each triangle
+  std::vector<std::uint32_t> owner;  // per triangle: its object
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o)
     owner.insert(owner.end(), scene.objects[o].triangle_count, o);
   const Ignored ignored(scene, options.ignored);
   result.ignored = ignored.triangle_pairs();
   const Kept kept_pairs(scene, owner, ignored, kept);
 
-  std::vector<TrianglePair> chunk;  // pairs that were not kept
+  std::vector<TrianglePair> chunk;  // undecided pairs that are not in `kept`
   const auto decide_chunk = [&] {
     const Collisions missed = steps.decide(scene, chunk, {.clearance = clearance});
     result.neighbours += missed.neighbours_apart;
@@ -354,7 +354,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   const std::vector<Bounds> bounds = bounds_of_triangles(scene);
   const std::uint64_t disjoint = Tree(scene, bounds, clearance).join(visit);
   decide_chunk();
-  // A kept pair with disjoint boxes is a mistake of the culling. It counts as kept, so it is
+  // Kept pairs with disjoint boxes are a mistake of the culling. They count as kept, so they are
   // subtracted from certified_by_boxes.
   const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(
       kept.begin(), kept.end(),
@@ -362,7 +362,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   result.pairs_kept += kept_disjoint;
   if (result.pairs_kept != kept.size())
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
-  // The tree counts ignored pairs as well, so those with disjoint boxes are subtracted.
+  // The tree also counts ignored pairs, so the ignored pairs with disjoint boxes are subtracted.
   const std::uint64_t ignored_disjoint = result.ignored - ignored_overlapping;
   result.certified_by_boxes = disjoint - kept_disjoint - ignored_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");

@@ -1,9 +1,9 @@
-// Independent accounting: each pair of triangles that counts is kept by culling, proved apart or
+// Independent accounting. Each pair of triangles that counts is kept by culling, proved apart or
 // missed. A pair counts if its triangles are of different objects, or of one object marked `self`.
 //
-// The accounting shares no code with the culling. It computes boxes itself, and finds the pairs
-// with overlapping boxes by an algorithm of its own, not by CGAL's join or core's join. It decides
-// the pairs that were not kept with verify/exact. It does not use offsets, views or budgets.
+// The accounting shares no code with culling. It computes its own boxes, and finds the pairs with
+// overlapping boxes by its own algorithm, not by CGAL's join or core's join. It decides the pairs
+// that were not kept with verify/exact. It does not use offsets, views or budgets.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 namespace farcull {
 
 /// A fingerprint of a set of pairs: the number of pairs and the sum of their hashes. Two different
-/// sets of the same size have equal sums with a probability of 2^-64.
+/// sets of the same size have equal sums with a probability of about 2^-64.
 struct PairSet {
   std::uint64_t count = 0;
   std::uint64_t sum = 0;
@@ -28,14 +28,14 @@ struct PairSet {
   bool operator==(const PairSet&) const = default;
 };
 
-/// Returns the set of the pairs that count and whose boxes overlap, as the certificate enumerates
-/// them (verify/certificate/box_pairs.h). Boxes overlap if they are no farther apart than the
-/// clearance along each axis.
+/// Returns the fingerprint of the pairs that count and whose boxes overlap, enumerated by BoxPairs
+/// (verify/certificate/box_pairs.h). Boxes overlap if their gap along each axis is at most the
+/// clearance.
 PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance);
 
 /// Numbers of unordered pairs that count. Each pair is counted in exactly one field after
-/// pairs_total: the first field that fits the pair. verify/exact.h defines neighbours, their shared
-/// part and the clearance D.
+/// pairs_total: the first field that fits. verify/exact.h defines neighbours, their shared part and
+/// the clearance D.
 struct Accounting {
   std::uint64_t pairs_total = 0;         // computed from the sizes of the objects
   std::uint64_t ignored = 0;             // pairs of objects in AccountOptions::ignored
@@ -43,7 +43,7 @@ struct Accounting {
   std::uint64_t certified_by_boxes = 0;  // pairs whose boxes are more than D apart along an axis
   std::uint64_t neighbours = 0;          // neighbours that share only the shared part
   std::uint64_t certified_by_predicates = 0;  // pairs that exact predicates prove more than D apart
-  std::uint64_t false_negatives = 0;          // the missed pairs: those in no other class
+  std::uint64_t false_negatives = 0;          // missed pairs: all pairs of no other class
   std::vector<TrianglePair> examples;         // the first missed pairs in sorted order
   double ms = 0;                              // wall clock of the whole accounting
   FARCULL_FIELDS(pairs_total, ignored, pairs_kept, certified_by_boxes, certified_by_predicates,
@@ -56,11 +56,11 @@ struct Accounting {
 struct AccountOptions {
   double clearance = 0;                  // world units, finite, >= 0
   std::size_t max_examples = 10;         // at most this many missed pairs are returned
-  std::vector<ObjectPair> ignored = {};  // sorted, a < b; a kept pair of such objects is an error
+  std::vector<ObjectPair> ignored = {};  // sorted, a < b; no kept pair may be of such objects
 };
 
-/// The two functions that account() calls: one decides pairs, the other enumerates pairs. Tests
-/// replace them by faulty functions, and account() has to notice the faults.
+/// The two functions that account() calls: `decide` decides pairs, `overlapping` enumerates pairs.
+/// Tests replace these by faulty functions, and check that account() notices the faults.
 struct AccountingSteps {
   std::function<Collisions(const Scene&, std::span<const TrianglePair>, const ExactQuestion&)>
       decide = farcull::decide;
@@ -68,13 +68,13 @@ struct AccountingSteps {
 };
 
 /// Counts the pairs of each class. kept: the pairs that culling left to the exact tests, sorted,
-/// each once, a < b. Kept pairs count and are not ignored. Memory O(triangles + kept). Throws
-/// std::logic_error in these cases:
+/// each once, a < b. Each kept pair must count and must not be ignored. Memory O(triangles + kept).
+/// Throws std::logic_error in these cases:
 /// - `kept` is not as described above, so that the counts would be wrong.
 /// - validate() would not accept the ranges of the scene.
 /// - The clearance is negative or not finite.
 /// - A pair is left undecided, or the classes do not sum to pairs_total.
-/// - The certificate's own enumeration finds other pairs with overlapping boxes.
+/// - BoxPairs finds a different set of pairs with overlapping boxes.
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {}, const AccountingSteps& steps = {});
 

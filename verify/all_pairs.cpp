@@ -1,6 +1,6 @@
-// The method `exact`: core's join finds pairs of overlapping boxes, and the thread that finds a
-// pair decides it. In verify/, only this file uses the join of core. Accounting and certificates
-// check the answers, so they find the pairs with overlapping boxes by trees of their own.
+// The method `exact`: core's join finds pairs with overlapping boxes, and the thread that finds a
+// pair decides it. No other file in verify/ uses core's join. Accounting and certificates check the
+// results, so they find the pairs with overlapping boxes by their own trees.
 #include <algorithm>
 #include <functional>
 #include <mutex>
@@ -25,7 +25,7 @@ namespace {
 // computed by differences in double. Rounding is monotone: if a rounded difference is above D, so
 // is the exact difference. The join finds all pairs for which this function is false: the join
 // grows each box by at least D/2 + ulp(D)/2. If the grown boxes are disjoint, an exact difference
-// is above D + ulp(D), so its rounded value is above D.
+// is above D + ulp(D), so the rounded difference is above D.
 bool farther_along_an_axis(const Scene& scene, const TrianglePair& pair, double clearance) {
   const Box a = grown_box(scene, pair.a, 0), b = grown_box(scene, pair.b, 0);
   for (int k = 0; k < 3; ++k) {

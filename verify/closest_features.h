@@ -1,8 +1,8 @@
 // Finds two closest points of two features (corner, edge or face of a triangle): the points whose
 // difference is perpendicular to both features. All numbers are integers, so nothing is rounded.
-// verify/closest_points.cpp uses this for triangles. Other sources of verify use only the vectors.
+// verify/closest_points.cpp uses this file; other sources use only the vector functions.
 //
-// Corners have integer coordinates, all scaled alike. A point of a feature is a corner plus
+// Corners have integer coordinates in one common scale. A point of a feature is a corner plus
 // multiples of the edges from that corner. The multiples are fractions with the denominator
 // Found::below.
 #pragma once
@@ -38,7 +38,7 @@ Vector<Integer> cross(const Vector<Integer>& x, const Vector<Integer>& y) {
           Integer(x[0] * y[1] - x[1] * y[0])};
 }
 
-/// Returns the number of the corner at which an edge ends. Edge i begins at corner i.
+/// Returns the index of the corner where an edge ends. Edge i begins at corner i.
 constexpr int edge_end(int edge) { return edge == 2 ? 0 : edge + 1; }
 
 /// Bit i of the result is set if corner i belongs to the feature.
@@ -51,18 +51,18 @@ constexpr unsigned corners_of(const Feature& f) {
 template <class Integer>
 struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0
-  Vector<Integer> direction;  // a positive multiple of the vector from a's point to b's point
-  Integer below;              // > 0; the denominator of `multiples`
-  // Numerators for the point of a, then for that of b. Edge: {t, unused}, and the point is start +
-  // t / below * edge. Face: {s, t}, and the point is corner 0 + s / below * (corner 1 - corner 0) +
-  // t / below * (corner 2 - corner 0). Vertex: not used.
+  Vector<Integer> direction;  // a positive multiple of (b's point - a's point)
+  Integer below;              // > 0; denominator of `multiples`
+  // Numerators for the point of a, then for the point of b. Edge: {t, unused}; the point is start +
+  // t / below * edge. Face: {s, t}; the point is corner 0 + s / below * (corner 1 - corner 0) + t /
+  // below * (corner 2 - corner 0). Vertex: not used.
   std::array<std::array<Integer, 2>, 2> multiples;
-  bool inside = false;  // neither point lies on the boundary of its feature
+  bool inside = false;  // true: neither point is on the boundary of its feature
 };
 
-// Each of these functions looks for two points as described at Found. It returns true if the closed
-// features have exactly one such pair of points, which it writes to `f`. If it returns false,
-// ignore `f`.
+// Each of the next functions looks for two points as described at Found. If the closed features
+// have exactly one such pair of points, writes the pair to `f` and returns true. Otherwise returns
+// false, and `f` must not be used.
 
 template <class Integer>
 bool vertex_vertex(const Vector<Integer>& p, const Vector<Integer>& q, Found<Integer>& f) {
@@ -94,7 +94,7 @@ bool vertex_edge(const Vector<Integer>& p, const Vector<Integer>& q, const Vecto
 
 /// Looks for the closest points of the corner p and the face of t. Let e and f be the edges from
 /// t0, n = e x f, and p - t0 = l e + m f + h n. Then (p - t0) x f = l n + h n x f. Since n x f is
-/// perpendicular to n, the scalar product with n gives l. m follows in the same way.
+/// perpendicular to n, the scalar product with n gives l. The same steps give m.
 template <class Integer>
 bool vertex_face(const Vector<Integer>& p, const Corners<Integer>& t, Found<Integer>& f) {
   const Vector<Integer> to_1 = minus(t[1], t[0]);
@@ -144,8 +144,8 @@ bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vec
   return true;
 }
 
-/// True if the edge from p to p_end crosses the plane of t in one point that lies in the face. The
-/// distance is then 0.
+/// Looks for the point where the edge from p to p_end crosses the plane of t, if there is one such
+/// point and it lies in the face. The distance is then 0.
 template <class Integer>
 bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Corners<Integer>& t,
                Found<Integer>& f) {
@@ -175,8 +175,8 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   return true;
 }
 
-/// Looks for the closest points of a feature of a and a feature of b. Two faces never have a single
-/// closest pair.
+/// Looks for the closest points of a feature of a and a feature of b. Returns false for two faces,
+/// which never have a single closest pair.
 template <class Integer>
 bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>& b,
           const Feature& of_b, Found<Integer>& f) {
@@ -198,7 +198,7 @@ bool find(const Corners<Integer>& a, const Feature& of_a, const Corners<Integer>
   return edge_face(a[i], a[edge_end(i)], b, f);
 }
 
-/// Returns the point of the feature, times f.below. side: 0 for a point of a, 1 for a point of b.
+/// Returns the point of the feature, multiplied by f.below. side: 0 for the point of a, 1 for b.
 template <class Integer>
 Vector<Integer> point_of(const Corners<Integer>& t, const Feature& feature, const Found<Integer>& f,
                          int side) {
@@ -215,7 +215,7 @@ Vector<Integer> point_of(const Corners<Integer>& t, const Feature& feature, cons
   return out;
 }
 
-// Guesses in doubles the features on which two closest points lie (Ericson, Real-Time Collision
+// Guesses in double the features on which two closest points lie (Ericson, Real-Time Collision
 // Detection, 2005, sections 5.1.5 and 5.1.9). verify/closest_points.cpp proves the guess.
 
 struct Guess {
@@ -223,7 +223,7 @@ struct Guess {
   Feature of_a, of_b;
 };
 
-/// Returns the feature at parameter s of edge i: a corner if s <= 0 or s >= 1, otherwise the edge.
+/// Returns the feature at parameter s of edge i: a corner if s <= 0 or s >= 1, else the edge.
 inline Feature on_edge(int i, double s) {
   if (s <= 0) return {FeatureKind::vertex, static_cast<std::uint8_t>(i)};
   if (s >= 1) return {FeatureKind::vertex, static_cast<std::uint8_t>(edge_end(i))};
@@ -232,8 +232,8 @@ inline Feature on_edge(int i, double s) {
 
 inline double in_unit(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
-/// Updates the guess with edge i of a (from a[i] along u) and edge j of b (from b[j] along v). For
-/// nearly parallel edges, an end of an edge is used: it is closest, or nearly closest.
+/// Improves the guess by edge i of a (from a[i] along u) and edge j of b (from b[j] along v). If
+/// the edges are nearly parallel, uses an end of an edge, which is closest or nearly closest.
 inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
                         const std::array<Vec3, 3>& b, const Vec3& v, int j, Guess& guess) {
   const Vec3 w = a[i] - b[j];
@@ -249,8 +249,8 @@ inline void guess_edges(const std::array<Vec3, 3>& a, const Vec3& u, int i,
   if (squared < guess.squared) guess = {squared, on_edge(i, s), on_edge(j, t)};
 }
 
-/// True if corner p lies over the face of t and is nearer to the face than the guess. Then the
-/// square of the distance is written to the guess.
+/// True if corner p lies over the face of t, with a squared distance below guess.squared. Then sets
+/// guess.squared to this squared distance.
 inline bool guess_face(const Vec3& p, const std::array<Vec3, 3>& t, Guess& guess) {
   const Vec3 e = t[1] - t[0], f = t[2] - t[0], w = p - t[0];
   const Vec3 n = e.cross(f);

@@ -1,4 +1,4 @@
-// Closest points of two triangles, and the planes between the triangles.
+// Computes closest points of two triangles, and the two planes between the triangles.
 #include "verify/closest.h"
 
 #include <algorithm>
@@ -14,27 +14,27 @@
 
 namespace farcull {
 
-// Doubles guess the features. Integers prove the guess; if they cannot, all features are tried.
+// Doubles guess the features. Integers prove the guess. If the proof fails, all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
 // power of two that makes them integers. All later steps add, subtract and multiply integers.
 //
-// The answer is the first pair of features, F of a and G of b ordered by F and then by G, that
+// The result is the first pair of features, F of a and G of b ordered by F and then by G, that
 // holds two closest points. docs/proximity.md ("Two nearest points") proves that F and G hold only
-// one such pair, and that find() constructs it. For other features find() gives points of these
-// features or nothing, so never nearer points. So find() is called for all pairs of features in
-// order, and the answer is the first result with the least distance.
+// one such pair of points, and that find() constructs this pair. For other features, find()
+// constructs points of these features or nothing, so never nearer points. So find() is called for
+// all pairs of features in order, and the result is the first pair with the least distance.
 //
 // Proof of a guess. By the theorem in docs/proximity.md, p and q with w = q - p are closest points
 // iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. All closest
 // points of a lie in the hull of the corners x with product 0. All closest points of b lie in the
-// hull of the corners y with product 0. So a guess is the answer under three conditions: these
-// corners are just the corners of F and of G; p and q are inside F and G; F or G is a corner, or
+// hull of the corners y with product 0. So a guess is the result under three conditions: these
+// corners are exactly the corners of F and of G; p and q are inside F and G; F or G is a corner, or
 // both are edges that are not parallel. Otherwise the features of these corners are tried in order,
 // until two features have points as near as p and q.
 //
-// Doubles only choose which features to try, and leave out features that are provably not closest.
-// So only the final rounding affects the answer.
+// Doubles only choose which features to try, and exclude features that are provably not closest. So
+// only the final rounding affects the result.
 
 namespace {
 
@@ -56,15 +56,15 @@ constexpr std::array<Feature, 7> kFeatures = {{{FeatureKind::vertex, 0},
                                                {FeatureKind::edge, 2},
                                                {FeatureKind::face, 0}}};
 
-/// An answer before it is rounded.
+/// The result before rounding.
 struct Answer {
   Feature of_a, of_b;
   Found<Integer> found;
 };
 
-/// Returns a set of corners of t: bit i is set if d.(x - p) is 0, where x is corner i of t and p a
-/// corner of the feature of t. Returns 8 if the product is above 0 for some corner. back: uses -d
-/// instead of d.
+/// Returns a set of corners of t: bit i is set if d.(x - p) is 0, where x is corner i of t and p is
+/// a corner of the feature of t. Returns 8 if the product is above 0 for some corner. back: true
+/// replaces d by -d.
 unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
   constexpr unsigned kBeyond = 8;
   const unsigned own = corners_of(feature);
@@ -80,8 +80,8 @@ unsigned touching(const Corners& t, const Feature& feature, const Vector& d, boo
   return out;
 }
 
-/// Finds the first pair of features that has points at the distance of `least`. The features may
-/// use only the corners in_a of a and in_b of b. Returns false if there is no such pair.
+/// Finds the first pair of features that has points at the same distance as `least`. Tries only
+/// features with corners in the sets in_a and in_b (bits). Returns false if there is no such pair.
 bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
                    Answer& answer) {
   for (const Feature& f : kFeatures) {
@@ -143,7 +143,7 @@ Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array
   return best;
 }
 
-/// True only if closest points of the guessed features are proved. Then writes the final answer.
+/// Returns true only if the guess proves the closest points. Then writes the result to `answer`.
 bool proved(const Scaled& pair, const closest::Guess& guess, Answer& answer) {
   answer.of_a = guess.of_a;
   answer.of_b = guess.of_b;
@@ -169,7 +169,7 @@ SquaredDistance squared(const Scaled& pair, const Found<Integer>& found) {
       SquaredDistance::Value{found.num, found.den, 2L * pair.exponent}));
 }
 
-/// True if m times 2^exponent is a double.
+/// True if m * 2^exponent is a double.
 bool is_double(const Integer& m, long exponent) {
   if (m == 0) return true;
   const long first = bits_of(m) + exponent;
@@ -199,7 +199,7 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
     return rounded_point(point_of(side == 0 ? pair.a : pair.b, f, answer.found, side),
                          answer.found.below, pair.exponent);
   };
-  // If an edge passes through a face, the point of the face is the point of the edge.
+  // If an edge crosses a face, both features have the same point, which is computed once.
   const bool passes = out.features[0].kind != FeatureKind::vertex &&
                       out.features[1].kind != FeatureKind::vertex &&
                       out.features[0].kind != out.features[1].kind;
@@ -216,8 +216,8 @@ SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<
 
 struct PlanesBetween::Planes {
   Vector direction;
-  std::array<Vec3, 2> on;  // a corner of a on the first plane, a corner of b on the second plane
-  long exponent = 0;       // reach and start are scaled by 2^exponent to be finite
+  std::array<Vec3, 2> on;  // a corner of a on the first plane, and of b on the second plane
+  long exponent = 0;       // reach and start are scaled by 2^exponent, to avoid overflow
 };
 
 PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
@@ -226,14 +226,14 @@ PlanesBetween::PlanesBetween(const std::array<Vec3, 3>& a, const std::array<Vec3
   if (answer.found.num == 0) throw std::logic_error("PlanesBetween: the triangles meet");
   auto planes = std::make_shared<Planes>();
   planes->direction = answer.found.direction;
-  // The direction is perpendicular to each feature, so any corner of a feature is on its plane.
+  // The direction is perpendicular to both features, so all corners of a feature are on its plane.
   planes->on = {a[answer.of_a.index], b[answer.of_b.index]};
   planes->exponent = -most_bits(planes->direction) - 4;
   planes_ = std::move(planes);
 }
 
-// Returns reach (side 0) or start (side 1) of t. Computes in integers the scalar products of the
-// direction with each corner minus a point of the plane. Rounds a reach up and a start down.
+// Returns reach (side 0) or start (side 1) of t. For each corner, computes in integers the scalar
+// product of the direction and (corner - origin). Rounds a reach up and a start down.
 double PlanesBetween::place(const std::array<Vec3, 3>& t, int side) const {
   const Vec3& origin = planes_->on[side];
   double out = 0;

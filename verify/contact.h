@@ -2,16 +2,16 @@
 //
 // The lectures on CULLIDE and S-CULLIDE distinguish *penetrating* contacts, where the surfaces pass
 // through each other, from *touching* contacts, which S-CULLIDE ignores. The exact definition here:
-// two triangles penetrate iff their relative interiors meet and they do not lie in one plane. All
-// other triangles that intersect touch. In other words, A and B penetrate iff 0 is an interior
-// point of A - B. Then only translations above some length separate A and B. Triangles that touch
-// are separated by arbitrarily short translations.
+// two triangles that intersect *penetrate* iff their relative interiors meet and they do not lie in
+// one plane; otherwise they *touch*. Equivalently, A and B penetrate iff 0 is an interior point of
+// the Minkowski difference A - B. Then every translation that separates A and B is longer than some
+// positive number. Triangles that touch are separated by arbitrarily short translations.
 //
-// Semantics and preconditions as in verify/exact.h: any finite doubles; a degenerate triangle is a
-// segment or a point. The relative interior is the triangle without its edges, the segment without
-// its ends, or the whole point. Two segments that meet lie in one plane, so they touch. A point
-// touches every triangle that it meets. Every decision is the sign of a determinant, evaluated
-// exactly.
+// Semantics and preconditions are those of verify/exact.h: any finite doubles are allowed, and a
+// degenerate triangle is a segment or a point. The relative interior is the triangle without its
+// edges, the segment without its ends, or the whole point. Two segments that meet lie in one plane,
+// so they touch. A point touches every triangle that contains the point. Every decision is the
+// exact sign of a determinant.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@
 namespace farcull {
 
 /// True if two triangles penetrate. False for triangles that share no point. Symmetric; the order
-/// of corners does not matter. Neighbours are treated as any other triangles: if they meet only in
-/// their shared part, they touch.
+/// of corners does not matter. Neighbours (verify/exact.h) get no special treatment: if they meet
+/// only in their shared part, they touch.
 bool penetrate(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 struct ContactCounts {
@@ -38,28 +38,29 @@ struct ContactCounts {
   bool operator==(const ContactCounts&) const = default;
 };
 
-/// Counts the contacts of pairs that intersect, each pair as often as it is given. 0 threads count
-/// as 1; the number of threads changes no answer. Throws std::logic_error if a pair names one
-/// triangle twice, or a triangle that the scene does not have.
+/// Counts the touching and the penetrating pairs. Precondition: the triangles of each pair
+/// intersect. A repeated pair counts each time. threads: 0 counts as 1; the number changes no
+/// answer. Throws std::logic_error if a pair names one triangle twice, or a triangle that the scene
+/// does not have.
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
                              unsigned threads = std::thread::hardware_concurrency());
 
 // ---- kinds of contact ----
 //
 // contact_kind() returns how two triangles meet, as one of seven kinds. contact_shape() also
-// returns the points in common. Every two triangles A and B have exactly one kind, the first that
-// fits (docs/record.md, "Kinds of contact"; the labels of docs/suite.md are the same). A segment
-// has two corners (its ends) and one edge (itself); a point has one corner (itself). Neighbours are
-// treated as any other triangles: the part that they share is a contact too.
+// returns the points in common. Two triangles A and B have exactly one kind: the first in the list
+// below that fits (docs/record.md, "Kinds of contact"; docs/suite.md has the same labels). A
+// segment has two corners (its ends) and one edge (itself); a point has one corner (itself).
+// Neighbours get no special treatment: their shared part is a contact, too.
 
 enum class ContactKind : std::uint8_t {
-  apart,         // no point in common: a pair that collides only by a clearance
+  apart,         // no point in common; the pair may be within a clearance
   equal,         // A and B are the same set of points
   touch_vertex,  // one point in common, which is a corner of A or of B
   touch_edge,    // one point in common, which is on an edge of A and on an edge of B
   coplanar,      // in one plane, and more than one point in common
   crossing,      // a point in common that is on no edge of A and on no edge of B;
-                 // a segment crosses a triangle if it passes through the triangle's inside
+                 // a segment crosses a triangle if it passes through the triangle's interior
   touch_face,    // a segment in common that is on an edge of A or of B
 };
 
@@ -68,15 +69,15 @@ inline constexpr std::array kContactKinds = {ContactKind::apart,        ContactK
                                              ContactKind::coplanar,     ContactKind::crossing,
                                              ContactKind::touch_face};
 
-/// Returns the kind's label in a suite, such as "touch-vertex".
+/// Returns the label of a kind, such as "touch-vertex".
 std::string_view name_of(ContactKind kind);
 /// The inverse of name_of(); empty if no kind has this name.
 std::optional<ContactKind> parse_contact_kind(std::string_view name);
 
-/// The kind, and the points in common, which are a convex set.
+/// How two triangles meet. Their common points form a convex set.
 struct ContactShape {
   ContactKind kind = ContactKind::apart;
-  int dimension = -1;  // of these points: 0 a point, 1 a segment, 2 a polygon, -1 none
+  int dimension = -1;  // of the common points: 0 a point, 1 a segment, 2 a polygon, -1 none
   /// World units. Dimension 1: the ends of the segment, the lexicographically lower end first, each
   /// coordinate rounded once to the nearest double. Dimension 0: the point, twice. Otherwise zeros.
   std::array<Vec3, 2> ends = {Vec3::Zero(), Vec3::Zero()};
@@ -92,14 +93,13 @@ ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 
 /// Returns the corners of the common polygon in order around it, each coordinate rounded once to
 /// the nearest double. Empty unless the points in common have dimension 2. The lexicographically
-/// lowest corner comes first; the lower one of its two neighbours comes second. The exact corners
-/// are compared; different corners may be rounded to the same doubles. Symmetric; the order of the
-/// triangles' corners does not matter.
+/// lowest corner comes first; the lower of the two adjacent corners comes second. This order is
+/// that of the exact corners; rounding may make different corners equal. Symmetric; the order of
+/// the triangles' corners does not matter.
 std::vector<Vec3> contact_polygon(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Returns the kind of each pair, in the order given. 0 threads count as 1; the number of threads
-/// changes no answer. Throws std::logic_error if a pair names a triangle that the scene does not
-/// have.
+/// Returns the kind of each pair, in the order given. threads: the number changes no answer; 0
+/// counts as 1. Throws std::logic_error if a pair names a triangle that the scene does not have.
 std::vector<ContactKind> contact_kinds(const Scene& scene, std::span<const TrianglePair> pairs,
                                        unsigned threads = std::thread::hardware_concurrency());
 

@@ -1,7 +1,7 @@
 // Finds how two triangles meet if one of them is a segment or a point: cuts the segment or point by
-// the half-spaces that bound the other triangle. All numbers are integers. The three coordinates of
-// a point have one denominator. So only the answer is rounded. This file also has the functions
-// that take lists of pairs.
+// the half-spaces that bound the other triangle. All numbers are integers: a point has three
+// numerators and one denominator. So nothing is rounded except the returned points. The functions
+// that take lists of pairs are here, too.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -25,7 +25,7 @@ using Integers = std::array<mpz_class, 3>;
 constexpr std::array<std::string_view, kContactKinds.size()> kNames = {
     "apart", "equal", "touch-vertex", "touch-edge", "coplanar", "crossing", "touch-face"};
 
-/// The point x / w, in units of a power of two. w > 0. Not in lowest terms.
+/// The point x / w, times 2^Scaled::exponent. w > 0. The fractions need not be in lowest terms.
 struct Point {
   Integers x;
   mpz_class w = 1;
@@ -51,7 +51,7 @@ struct Bound {
   mpz_class value(const Point& p) const { return dot(normal, p.x) - offset * p.w; }
 };
 
-/// A triangle, segment or point, both as the hull of `corners` and as the points in all `bounds`.
+/// A triangle, segment or point: the hull of `corners` and the intersection of all `bounds`.
 struct Hull {
   std::vector<Integers> corners;
   std::vector<Bound> bounds;
@@ -68,8 +68,8 @@ struct Hull {
       for (std::size_t i = 0; i < 3; ++i)
         bounds.emplace_back(cross(n, minus(corners[(i + 1) % 3], corners[i])), corners[i], false);
     } else if (of == Shape::segment) {
-      // d = `first` is not 0 along `axis`, and e is the unit vector along the next axis. So
-      // d x e is not 0, and d x (d x e) is perpendicular to d and to d x e.
+      // Let d be `first`, and e the unit vector along the axis after `axis`. Since d is not 0 along
+      // `axis`, d x e is not 0. The vector d x (d x e) is perpendicular to d and to d x e.
       std::size_t axis = 0;
       while (sgn(first[axis]) == 0) ++axis;
       const Integers u = cross(first, unit((axis + 1) % 3));
@@ -86,7 +86,7 @@ struct Hull {
   bool is_corner(const Point& p) const {
     return std::ranges::any_of(corners, [&](const Integers& x) { return compare(p, {x}) == 0; });
   }
-  /// True if a point of the hull is on an edge. Every point of a segment is on an edge.
+  /// True if p, a point of the hull, is on an edge. Every point of a segment is on an edge.
   bool on_edge(const Point& p) const {
     return corners.size() < 3 || std::ranges::any_of(bounds, [&](const Bound& bound) {
              return !bound.plane && sgn(bound.value(p)) == 0;
@@ -102,8 +102,8 @@ struct Hull {
 };
 
 /// Cuts a segment to the part where sign * bound.value() >= 0. Returns false if nothing is left.
-/// The new end is the sum of both old ends, each times the magnitude of the other end's value.
-/// Since bound.value() is linear in (x, w), it is 0 at the new end.
+/// The new end is the sum of both old ends, each times |value()| of the other end. Since value() is
+/// linear in (x, w), it is 0 at the new end.
 bool cut(std::array<Point, 2>& ends, const Bound& bound, int sign) {
   const mpz_class first = sign * bound.value(ends[0]), last = sign * bound.value(ends[1]);
   if (first < 0 && last < 0) return false;
@@ -149,8 +149,8 @@ ContactKind contact_kind(const Corners& a, const Corners& b) {
 }
 
 bool penetrate(const Corners& a, const Corners& b) {
-  // Relative interiors of triangles in different planes meet iff a common point is on no edge of
-  // either triangle.
+  // Relative interiors of triangles in different planes meet iff the triangles have a common point
+  // that is on no edge.
   return contact_kind(a, b) == ContactKind::crossing;
 }
 

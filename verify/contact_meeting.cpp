@@ -1,8 +1,8 @@
 // Finds how two triangles meet by signs of determinants of their corners (Guigue, Devillers: Fast
 // and robust triangle-triangle overlap test using orientation predicates, 2003). No point is
-// constructed. Doubles decide most signs, with the bounds of verify/filter_scalars.h. CGAL's kernel
-// Epick decides the other signs. It is exact for determinants of input points (verify/exact.cpp
-// gives the reasons).
+// constructed. Doubles decide most signs, with the error bounds of verify/filter_scalars.h. CGAL's
+// kernel Epick decides the other signs. Epick is exact for determinants of input points
+// (verify/exact.cpp gives the reasons).
 #include "verify/contact_meeting.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -19,8 +19,8 @@ using Corners = std::array<Vec3, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Exact signs of determinants of the corners of two triangles. Corners 0 to 2 are those of a,
-/// corners 3 to 5 those of b. Doubles decide most signs. A determinant is 0 if each of its terms
-/// has a factor 0, as for faces of boxes. CGAL decides the other signs.
+/// corners 3 to 5 those of b. Doubles decide most signs. If each term of a determinant has a factor
+/// 0, as often with axis-aligned faces, the determinant is 0. CGAL decides the other signs.
 class Signs {
  public:
   Signs(const Corners& a, const Corners& b) : a_(a), b_(b) {}
@@ -32,7 +32,7 @@ class Signs {
     const auto e = from(p, q), f = from(p, r), w = from(p, s);
     const int sign = filters::side_of<FilterBounds>(filters::normal_of(e, f), w);
     if (sign != 0) return sign;
-    // A difference is 0 only for equal doubles, since nothing underflows to 0.
+    // The difference of two different doubles is never rounded to 0, since subnormals are kept.
     const bool terms = (w.x != 0 && ((e.y != 0 && f.z != 0) || (e.z != 0 && f.y != 0))) ||
                        (w.y != 0 && ((e.z != 0 && f.x != 0) || (e.x != 0 && f.z != 0))) ||
                        (w.z != 0 && ((e.x != 0 && f.y != 0) || (e.y != 0 && f.x != 0)));
@@ -55,7 +55,7 @@ class Signs {
     return CGAL::orientation(point(p, u, v), point(q, u, v), point(r, u, v));
   }
 
-  /// Returns the first axis along which the normal of a triangle is not 0; none if the triangle is
+  /// Returns the lowest axis along which the normal of a triangle is not 0; none if the triangle is
   /// a segment or a point. first: the number of the triangle's first corner.
   std::optional<int> axis_of(int first) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +65,7 @@ class Signs {
   }
 
   /// True if corner k lies in the closed triangle whose first corner is `first`. Preconditions: the
-  /// corner lies in the triangle's plane; the plane's normal is not 0 along the axis.
+  /// corner lies in the triangle's plane; the plane's normal is not 0 along `axis`.
   bool holds(int first, int axis, int k) const {
     int least = 0, most = 0;
     for (int i = 0; i < 3; ++i) {
@@ -85,13 +85,12 @@ class Signs {
   const Corners& b_;
 };
 
-/// Returns the meeting of two triangles in one plane. Each corner of their common part is a corner
-/// of a triangle, or a crossing of two edges at inner points of both edges. If there is such a
-/// crossing, the common part is a polygon. If the common part is a segment, its two ends are its
-/// only corners.
+/// Returns how two triangles in one plane meet. Each corner of their common part is a corner of a
+/// triangle, or a point where two edges cross at inner points of both. If there is a crossing, the
+/// common part is a polygon. If the common part is a segment, its only corners are its two ends.
 Meeting meeting_in_plane(const Signs& signs, int axis) {
   constexpr int kFirst[] = {0, 3};
-  int turns[2][3][3];  // [t][i][k]: turn from edge i of triangle t to corner k of the other
+  int turns[2][3][3];  // [t][i][k]: side of edge i of triangle t for corner k of triangle 1 - t
   for (int t = 0; t < 2; ++t) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k)
@@ -134,33 +133,32 @@ Meeting meeting_in_plane(const Signs& signs, int axis) {
 
 }  // namespace
 
-// If the planes of the triangles differ, let L be their common line. A triangle does not meet L, or
-// meets it in one corner, or in a segment. In the last case, one corner is alone on its side of the
-// other triangle's plane. The two edges from this corner meet L at the ends of the segment. An end
-// may be a corner.
+// Suppose that the planes of the triangles cross in a line L. A triangle does not meet L, or meets
+// it in one corner, or in a segment. If it meets L in a segment, one corner is alone on its side of
+// the other triangle's plane. The two edges from this corner meet L at the ends of the segment. An
+// end may be a corner.
 //
-// If both triangles meet L in a segment, let p1 and p2 be the lone corners. Let q and r be the
-// other corners, ordered so that p1 is on the positive side of (p2, q2, r2) and p2 is on the
-// positive side of (p1, q1, r1). L meets the edges p1q1, p1r1, p2q2, p2r2 at u, v, s, t. Affine
-// maps that keep orientations make L the x axis, the planes z = 0 and y = 0, p1 = (a, y1, 0) and p2
-// = (b, 0, z2). Let k = y1 z2. q1 lies on the ray from p1 through u, at u or behind u; the other
-// edges are likewise. So
+// Suppose that both triangles meet L in a segment. Let p1 and p2 be the lone corners, q1 and r1 the
+// other corners of a, and q2 and r2 those of b. They are ordered so that p1 is on the positive side
+// of (p2, q2, r2), and p2 on that of (p1, q1, r1). L meets the edges p1q1, p1r1, p2q2, p2r2 at u,
+// v, s, t. An affine map that keeps orientations turns L into the x axis, the planes into z = 0 and
+// y = 0, p1 into (a, y1, 0), and p2 into (b, 0, z2). Let k = y1 z2. q1 lies on the ray from p1
+// through u, at u or beyond u. The same holds for the other three edges. So
 //   orientation(p1, q1, p2, q2) has the sign of orientation(p1, u, p2, s) = -k (s - u),
 //   orientation(p1, r1, r2, p2) has the sign of orientation(p1, v, t, p2) = k (t - v),
 //   orientation(p2, s, t, p1) = -k (t - s) > 0 and orientation(p1, u, v, p2) = k (v - u) > 0.
-// Let k > 0; for k < 0 all inequalities are reversed, with the same result. Then u < v and t < s.
-// The segments have more than a point in common iff u < s and t < v: iff the first two orientations
-// are negative. They have one point in common iff u = s or t = v: iff one of these orientations is
-// 0.
+// Let k > 0. (For k < 0 all inequalities are reversed, with the same result.) Then u < v and t < s.
+// The segments share more than a point iff u < s and t < v: iff the first two orientations are
+// negative. They share exactly one point iff u = s or t = v: iff one of these orientations is 0.
 //
-// One end of a common segment is max(u, t), the other end is min(v, s). orientation(p1, q1, p2, r2)
-// has the sign of -k (t - u): if it is positive, the first end is u, otherwise t. orientation(p1,
-// r1, p2, q2) has the sign of -k (s - v): if it is positive, the second end is s, otherwise v.
+// A common segment ends at max(u, t) and at min(v, s). orientation(p1, q1, p2, r2) has the sign of
+// -k (t - u). If this is positive, the first end is u, otherwise t. orientation(p1, r1, p2, q2) has
+// the sign of -k (s - v). If this is positive, the second end is s, otherwise v.
 std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool places) {
   const Signs signs(a, b);
   const std::optional<int> axis_a = signs.axis_of(0), axis_b = signs.axis_of(3);
   if (!axis_a || !axis_b) return std::nullopt;
-  std::array<std::array<int, 3>, 2> side{};  // of the corners of a, then of the corners of b
+  std::array<std::array<int, 3>, 2> side{};  // per corner of a, then of b: side of the other plane
   for (const int t : {1, 0}) {
     const int plane = t == 1 ? 0 : 3;
     for (int k = 0; k < 3; ++k) side[t][k] = signs.side(plane, plane + 1, plane + 2, 3 - plane + k);
@@ -184,7 +182,7 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
     }
     order[t] = {alone, (alone + 1) % 3, (alone + 2) % 3};
   }
-  // Orders q and r so that each lone corner is on the positive side of the other plane.
+  // Orders q and r so that each lone corner is on the positive side of the other triangle's plane.
   const bool a_below = side[0][order[0][0]] < 0, b_below = side[1][order[1][0]] < 0;
   if (a_below) std::swap(order[1][1], order[1][2]);
   if (b_below) std::swap(order[0][1], order[0][2]);
@@ -198,7 +196,7 @@ std::optional<Meeting> meeting_of(const Corners& a, const Corners& b, bool place
     if (side[t][to] == 0) return {3 * t + to, 3 * t + to};
     return {3 * t + order[t][0], 3 * t + to, {3 - 3 * t, 4 - 3 * t, 5 - 3 * t}};
   };
-  // x and y are places of one point. Returns the place that is a corner, if there is one.
+  // x and y are places of the same point. Prefers a place that is a corner.
   const auto either = [](const Place& x, const Place& y) { return y.from == y.to ? y : x; };
   const Place u = place(0, q1), v = place(0, r1), s = place(1, q2), t = place(1, r2);
   if (first == 0 || second == 0) {

@@ -1,6 +1,6 @@
-// Computes the points that two triangles share, rounded to the nearest doubles. Most roundings are
-// decided by numbers with about 106 bits and bounds of their errors (verify/wide.h). Integers
-// decide the other roundings. verify/contact_meeting.cpp finds which points to compute.
+// Computes the points that two triangles share, rounded to the nearest doubles. Numbers with about
+// 106 bits and error bounds (verify/wide.h) decide most roundings. Integers decide the other
+// roundings. verify/contact_meeting.cpp finds which points to compute.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,8 +24,8 @@ using closest::Vector;
 template <class N>
 using SixCorners = std::array<Vector<N>, 6>;
 
-/// Returns a normal of the plane of three corners. If an axis is given, the plane is parallel to
-/// this axis and goes through the first two corners.
+/// Returns a normal of the plane through the three corners `of`. If axis >= 0, returns a normal of
+/// the plane through the first two of these corners, parallel to the axis.
 template <class N>
 Vector<N> normal_of(const SixCorners<N>& corners, const std::array<int, 3>& of, int axis = -1) {
   Vector<N> second = {N(0), N(0), N(0)};
@@ -44,9 +44,9 @@ struct Quotient {
   N w;
 };
 
-/// Returns the point of a place: (q s - p t) / (s - t). p and q are the ends of the edge. s and t,
-/// which differ in sign, are the products of the plane's normal with p - origin and q - origin; the
-/// origin is in the plane.
+/// Returns the point of a place. Let p and q be the ends of its edge, and s and t the scalar
+/// products of the plane's normal with p - origin and q - origin; the origin is in the plane. s and
+/// t differ in sign. The point is (q s - p t) / (s - t).
 template <class N>
 Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
   const Vector<N>&p = corners[place.from], &q = corners[place.to];
@@ -61,8 +61,8 @@ Quotient<N> located(const SixCorners<N>& corners, const Place& place) {
 }
 
 // InWideNumbers and InIntegers have the same functions: at() finds the point at a place, rounded()
-// rounds it, compare() compares two points. An empty answer means that rounding errors leave a
-// doubt.
+// rounds a point to doubles, compare() compares two points. An empty result means that rounding
+// errors leave a doubt.
 
 class InWideNumbers {
  public:
@@ -88,9 +88,9 @@ class InWideNumbers {
       const auto is = [&](int corner, double x) { return corners_[corner][k].hi == x; };
       const auto [i, j, l] = place.other;
       const double fixed = corners_[i][k].hi;
-      if (p[k].hi == q[k].hi) {  // the edge does not change this coordinate
+      if (p[k].hi == q[k].hi) {  // the coordinate is constant along the edge
         out[k] = p[k];
-      } else if (is(j, fixed) && is(l, fixed)) {  // all of `other` has this coordinate
+      } else if (is(j, fixed) && is(l, fixed)) {  // all corners `other` have this coordinate
         out[k] = fixed;
       } else {
         if (!fits_) return std::nullopt;
@@ -107,11 +107,11 @@ class InWideNumbers {
     return Vec3(*x, *y, *z);
   }
 
-  /// Returns the sign of p - q in the lexicographic order. Precondition: rounded() has answers for
-  /// p and q.
+  /// Returns the sign of p - q in the lexicographic order. Precondition: rounded() is not empty for
+  /// p and for q.
   std::optional<int> compare(const Point& p, const Point& q) const {
     for (int k = 0; k < 3; ++k) {
-      // Rounding is monotone, so different doubles decide.
+      // `hi` is the rounded coordinate. Rounding is monotone, so different values decide.
       if (p[k].hi != q[k].hi) return p[k].hi < q[k].hi ? -1 : 1;
       const Wide difference = p[k] - q[k];
       if (std::abs(difference.hi) > std::abs(difference.lo) + difference.error)
@@ -122,7 +122,7 @@ class InWideNumbers {
   }
 
  private:
-  /// True only if coordinate k is constant along the common line of both planes.
+  /// True only if coordinate k is constant along the common line of the triangles' planes.
   bool is_constant(int k) const {
     if (!planes_differ_ || !fits_) return false;
     return cross(normal_of(corners_, {0, 1, 2}), normal_of(corners_, {3, 4, 5}))[k].is_zero();
@@ -164,7 +164,7 @@ class InIntegers {
   int exponent_ = 0;
 };
 
-/// Returns the ends of a common segment, the lower end first; or a common point, twice.
+/// Returns the ends of a common segment in the order of compare(); or a common point, twice.
 template <class Arithmetic>
 std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const auto p = arithmetic.at(meeting.places[0]),
@@ -178,8 +178,8 @@ std::optional<std::array<Vec3, 2>> ends_of(const Arithmetic& arithmetic, const M
   return *sign < 0 ? std::array{*first, *second} : std::array{*second, *first};
 }
 
-/// Returns the corners of a polygon in the order of contact_polygon(). Each side of the polygon is
-/// on the line of an edge. So two corners are neighbours iff both are on one of these lines.
+/// Returns the corners of a polygon in the order of contact_polygon(). Each side is on the line of
+/// an edge of a triangle. So two corners are adjacent iff both are on the line of one edge.
 template <class Arithmetic>
 std::optional<std::vector<Vec3>> polygon_of(const Arithmetic& arithmetic, const Meeting& meeting) {
   const int count = meeting.count;

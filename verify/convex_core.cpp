@@ -1,8 +1,8 @@
-// A core (convex_core.h) grows around a seed, within a box. It is cut at one triangle after
-// another, the nearest to the seed first. A cut is made along the triangle's own plane, or along a
-// plane perpendicular to the shortest segment from the seed to the triangle (like Deits and
-// Tedrake, Computing Large Convex Regions of Obstacle-Free Space through Semidefinite Programming,
-// 2015, for ellipsoids). For a solid with few flat faces, the cores are large boxes or wedges.
+// A core (convex_core.h) starts as a box around a point, the seed. The triangles are visited in the
+// order of their distance from the seed. A plane cuts the core at each triangle that still meets
+// the core. The plane is the triangle's own, or it is perpendicular to the shortest segment from
+// the seed to the triangle (like Deits and Tedrake, Computing Large Convex Regions of Obstacle-Free
+// Space through Semidefinite Programming, 2015, for ellipsoids).
 #include "verify/convex_core.h"
 
 #include <Eigen/Geometry>
@@ -52,8 +52,9 @@ struct HalfSpace {
   double reach;
 };
 
-/// True only if normal . (p - seed) > most for all p of t. The computed product has 5 roundings,
-/// each relative to the magnitudes, and so has `most`. 16 u covers all of them.
+/// True only if normal . (p - seed) > most for all p of t. `most` is a computed product of the same
+/// form, for points at most `size` from the seed on each axis. Each product has 5 roundings,
+/// relative to the magnitudes of its terms. 16 u covers the roundings of both.
 bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most, double size) {
   double least = kInf, magnitude = size;
   for (const Vec3& v : t) {
@@ -65,8 +66,8 @@ bool beyond(const Corners& t, const Vec3& seed, const Vec3& normal, double most,
 }
 
 /// True only if the hull of the points is proved to be a core, as described in convex_core.h. near:
-/// all triangles that may meet the hull. For the plane that divides a triangle from the hull, the
-/// normals of `planes` are tried before the normal of the triangle.
+/// all triangles that may meet the hull. To divide a triangle from the hull, the normals of
+/// `planes` are tried first, then the triangle's normal, then other directions.
 bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const Vec3& seed,
              std::span<const HalfSpace> planes, const std::vector<Vec3>& points) {
   double size = 0;
@@ -91,7 +92,7 @@ bool is_core(const ClosedObject& solid, const std::vector<Corners>& near, const 
   return solid.has(points.front());
 }
 
-/// Returns the part of a triangle that is in all of the half spaces, relative to the seed.
+/// Returns the part of a triangle in all half spaces, as a polygon relative to the seed.
 std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const HalfSpace> planes) {
   std::vector<Vec3> polygon = {t[0] - seed, t[1] - seed, t[2] - seed}, next;
   for (const auto& [normal, reach] : planes) {
@@ -107,7 +108,7 @@ std::vector<Vec3> clipped(const Corners& t, const Vec3& seed, std::span<const Ha
   return polygon;
 }
 
-/// Returns the sides of a box, moved inward, as half spaces relative to the seed.
+/// Returns half spaces, relative to the seed, for the sides of a box moved inward by `inward`.
 std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward) {
   std::vector<HalfSpace> out;
   for (int axis = 0; axis < 3; ++axis) {
@@ -117,7 +118,7 @@ std::vector<HalfSpace> sides_of(const Box& box, const Vec3& seed, double inward)
   return out;
 }
 
-/// Returns the corners of the common part of the half spaces, relative to the seed.
+/// Returns the corners of the intersection of the half spaces, relative to the seed.
 std::vector<Vec3> corners_of(std::span<const HalfSpace> planes, double size) {
   std::vector<Vec3> out;
   const std::size_t count = planes.size();
@@ -153,9 +154,9 @@ struct Grown {
   }
 };
 
-/// Returns the core around a seed. Each plane is moved towards the seed by the fraction `pull` of
-/// its distance from the seed, so that it cuts off many triangles of a curved surface. near: all
-/// triangles that meet the region, the nearest to the seed first.
+/// Returns the core around a seed; empty if none is found. near: all triangles that meet the
+/// region, the nearest to the seed first. Each plane is moved towards the seed by the fraction
+/// `pull` of its distance, so that one plane cuts off many triangles of a curved surface.
 std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>& near,
                           const Box& region, const Vec3& seed, double pull) {
   const double size = (region.hi - region.lo).norm();
@@ -189,11 +190,10 @@ std::optional<Grown> grow(const ClosedObject& solid, const std::vector<Corners>&
   return out;
 }
 
-/// True only if a plane perpendicular to t has all corners of a, moved by t, on one side and all
-/// corners of b on the other side. The projection of a moved corner has 6 roundings, relative to
-/// the magnitude. Far from the origin, corners are taken relative to a corner of the common box of
-/// a and b. These differences are exact along an axis on which no coordinate is more than twice
-/// another (Sterbenz, Floating-Point Computation, 1974).
+/// True only if a plane perpendicular to t separates the corners of a, moved by t, from those of b.
+/// The projection of a moved corner has 6 roundings, relative to `magnitude`. The origin is moved
+/// along each axis on which the coordinates have one sign and none is more than twice another.
+/// Differences from the new origin are exact (Sterbenz, Floating-Point Computation, 1974).
 bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   Vec3 origin = Vec3::Zero();
   double magnitude = t.cwiseAbs().maxCoeff();
@@ -211,7 +211,7 @@ bool plane_separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t
   return least - most > 16 * kU * t.cwiseAbs().sum() * magnitude + 0x1p-1000;
 }
 
-/// True if the surfaces of b and of a, moved by t, are more than `margin` apart.
+/// True if the surface of b and the surface of a, moved by t, are more than `margin` apart.
 bool surfaces_apart(const ClosedObject& a, const ClosedObject& b, const Vec3& t, double margin) {
   const auto moved = [&](BoundsTree::Bounds box) {
     for (int k = 0; k < 3; ++k) box.lo[k] += t[k], box.hi[k] += t[k];
@@ -274,7 +274,7 @@ ClosedObject::ClosedObject(const Scene& scene, std::uint32_t object, Surface sur
   if (double(triangles_.size()) * double(corners_.size()) > kMostTests) return;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : corners_) middle += p / double(corners_.size());
-  // The corners of a thin object have to be moved farther, because of rounding.
+  // Moves the corners inward. Thin objects need larger moves because of rounding.
   for (const double inward : {1e-12, 1e-9, 1e-6}) {
     convex_.clear();
     for (const Vec3& p : corners_) convex_.push_back(middle + (1 - inward) * (p - middle));
@@ -351,9 +351,8 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
     ++at;
   }
   std::vector<Vec3> tried(seeds.begin(), seeds.end());
-  // Each seed here is close to the middle of the region's part of a triangle. For each triangle
-  // there are seeds on both of its sides, at two small heights. The smaller height is for thin
-  // walls.
+  // Adds seeds on both sides of up to 96 triangles, at two small heights above the middle of the
+  // triangle's part in the region. The smaller height is for thin walls.
   const Vec3 middle = 0.5 * (region.lo + region.hi);
   const std::vector<HalfSpace> sides = sides_of(region, middle, 0);
   const std::size_t stride = near.size() / 96 + 1;
@@ -400,9 +399,9 @@ std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& re
 
 // Suppose that the surfaces are apart, but the insides have a common point. Then a connected piece
 // of one surface is entirely inside the other object. So it is enough to test one corner of each
-// piece. A coordinate that is moved in doubles is off by at most 2^-53 of its magnitude. The
-// surfaces are farther apart than two such errors, one for a and one for b. So the rounded corner
-// and the exact corner lie on the same side.
+// piece. Moving a coordinate in doubles is off by at most 2^-53 of its magnitude. The margin
+// between the surfaces is larger than all such errors. So the rounded corner and the exact corner
+// lie on the same side of the other surface.
 bool separates(const ClosedObject& a, const ClosedObject& b, const Vec3& t) {
   const FloatingPointGuard guard;
   const double magnitude = a.largest() + b.largest() + t.cwiseAbs().maxCoeff();

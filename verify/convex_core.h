@@ -1,9 +1,9 @@
-// Convex sets of points that lie inside a closed object: its *cores*. They give bounds of
+// Finds *cores* of a closed object: convex polytopes inside the object. Cores give lower bounds of
 // penetration depths (verify/penetration.h).
 //
 // A core is guessed in plain doubles, then proved. For each triangle of the object, a plane divides
 // the triangle from the core; bounds of all roundings prove this. So the surface does not meet the
-// core. One point of the core is inside the object, which is decided exactly. So all of the core is
+// core. One point of the core is inside the object, which is decided exactly. So the whole core is
 // inside.
 #pragma once
 
@@ -37,7 +37,7 @@ class ClosedObject {
   const Box& box() const { return box_; }
   double largest() const { return largest_; }  // the largest magnitude of a coordinate
   /// The corners of a core that is nearly the whole object: all corners, moved inward a little.
-  /// Empty if the object is not convex.
+  /// Empty if this core is not proved: the object is not convex, or the proof would take too long.
   const std::vector<Vec3>& convex() const { return convex_; }
   /// True iff the point is strictly inside, decided exactly.
   bool has(const Vec3& point) const;
@@ -57,11 +57,11 @@ class ClosedObject {
   double largest_ = 0;
 };
 
-/// The planes of a core are moved inward by this much, relative to the size of its region.
+/// Planes of a core are moved inward by this fraction of the diagonal of the core's region.
 inline constexpr double kCoreInward = 1e-10;
 
-/// Returns at most `most` cores of the part of the object in the region; empty if none is found.
-/// seeds: the points around which cores grow. The function adds seeds close to the surface.
+/// Returns convex() if not empty, otherwise at most `most` cores of the object within the region.
+/// seeds: points around which cores grow. The function adds seeds close to the surface.
 std::vector<std::vector<Vec3>> cores_of(const ClosedObject& solid, const Box& region,
                                         std::span<const Vec3> seeds, std::size_t most);
 

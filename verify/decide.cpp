@@ -1,5 +1,5 @@
-// decide(): threads take blocks of candidates in turn. A filter in doubles decides most pairs,
-// several pairs at once on SIMD lanes. Exact arithmetic decides the other pairs.
+// Implements decide(). Each thread repeatedly takes the next block of candidates. A filter in
+// doubles decides most pairs, several at once on SIMD lanes. Exact arithmetic decides the others.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -58,8 +58,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Returns a set of pairs of corners: bit 3 i + j is set if corner i of a and corner j of b have
-/// equal positions. Positions are compared only if the vertex indices differ.
+/// Returns a bit set: bit 3 i + j is set if corner i of a and corner j of b have equal positions.
+/// Positions are compared only if the vertex indices differ.
 unsigned equal_corners(const Scene& scene, const TrianglePair& pair, const Corners& a,
                        const Corners& b) {
   const std::array<std::uint32_t, 3>&a_index = scene.triangles[pair.a],
@@ -76,8 +76,8 @@ unsigned equal_corners(const Scene& scene, const TrianglePair& pair, const Corne
   return equal;
 }
 
-/// Returns the answer about neighbours without exact arithmetic; `unknown` if rounding leaves a
-/// doubt.
+/// Returns whether neighbours collide, decided in doubles; `unknown` if rounding leaves a doubt.
+/// equal: a result of equal_corners(), not 0.
 Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   const int i = std::countr_zero(equal) / 3, j = std::countr_zero(equal) % 3;
   const unsigned rest = equal & (equal - 1);
@@ -98,8 +98,7 @@ PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corne
   return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
 }
 
-/// Tells whether both triangles of a pair are of one object. Fast if pair.a mostly stays in one
-/// object.
+/// True if a pair is of one object. Fast if pair.a is mostly in the object of the previous call.
 class SameObject {
  public:
   explicit SameObject(const Scene& scene) : objects_(scene.objects) {}
@@ -109,7 +108,7 @@ class SameObject {
       const auto after = std::upper_bound(
           objects_.begin(), objects_.end(), pair.a,
           [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-      // The last object that starts at or before a. Empty objects with the same start come earlier.
+      // The object before `after` has pair.a: empty objects with the same start come earlier.
       first_ = std::prev(after)->first_triangle;
       end_ = std::uint64_t{first_} + std::prev(after)->triangle_count;
     }
@@ -122,16 +121,16 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
-// At most this many pairs are in a block. Smaller blocks would increment the shared counter more
-// often; larger blocks would balance the threads worse.
+// Largest number of pairs in a block. With smaller blocks, threads would increment the shared
+// counter more often; with larger blocks, the work of the threads would be less even.
 constexpr std::size_t kBlock = 1024;
 
 /// Decides up to kBlock pairs at a time. Each thread has its own BlockDecider with its own memory.
 ///
-/// The filter of planes never answers about neighbours. It answers only if it has proved that all
-/// corners of one triangle are off the plane of the other triangle, but a shared corner is in both
-/// planes. So all pairs may go through the filter. Corners are compared only if the filter's answer
-/// is unknown. If there are many neighbours, it is faster to set them aside first.
+/// filter_planes() is `unknown` for all neighbours: any other answer proves that the corners of one
+/// triangle are off the plane of the other, but a shared corner is in both planes. So all pairs may
+/// go through the filter, and corners are compared only if the filter's answer is `unknown`. If
+/// there are many neighbours, it is faster to find them before the filter.
 class BlockDecider {
  public:
   BlockDecider(const Scene& scene, const ExactQuestion& question)
@@ -156,8 +155,8 @@ class BlockDecider {
   }
 
  private:
-  /// Marks pairs that share a vertex index as neighbours_unasked. Puts all other pairs into
-  /// others_, and returns their number. Has no branches, which would often be mispredicted.
+  /// Marks pairs of one object that share a vertex as neighbours_unasked. Puts the others into
+  /// others_, and returns their number. Avoids a branch, which would often be mispredicted.
   std::size_t set_aside(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -210,7 +209,7 @@ class BlockDecider {
   const Scene& scene_;
   const ExactQuestion& question_;
   SameObject same_object_;
-  bool many_neighbours_ = false;  // true if the previous block had many
+  bool many_neighbours_ = false;  // true if the previous block had many neighbours
   std::array<TrianglePair, kBlock> others_;
   std::array<std::uint16_t, kBlock> where_;  // indices in the block of the pairs in others_
   std::array<Triage, kBlock> triage_;
@@ -263,7 +262,7 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
   // Each step takes twice as many candidates as the step before, so that threads have enough work
   // if few candidates collide. The steps do not depend on the number of threads. So `decided` and
-  // `complete` do not depend on it.
+  // `complete` do not depend on the number of threads, either.
   std::size_t step = 2 * kBlock;
   FirstCollisions out;
   Collisions& all = out.collisions;
@@ -296,7 +295,8 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  const std::optional<std::uint64_t> before = std::exchange(frame_, {});  // none until this ends
+  // If an exception is thrown below, frame_ stays empty.
+  const std::optional<std::uint64_t> before = std::exchange(frame_, {});
   decided_ = candidates.size();
   const bool sorted =
       std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();

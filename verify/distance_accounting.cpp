@@ -1,8 +1,8 @@
 // Each object has a tree of boxes over its triangles. For every two objects that are asked about,
-// the two trees are joined. All pairs of two nodes are settled at once in two cases: the boxes are
-// farther apart than the threshold of the objects, or all pairs of the nodes come after an answer
-// of distance 0 (only an earlier pair could refute such an answer). The remaining pairs are decided
-// one by one: first by two parallel planes in doubles, then in integers
+// the two trees are joined. All pairs of triangles below two nodes are settled at once in two
+// cases: the boxes are farther apart than the threshold of the objects, or all these pairs come
+// after an answer of distance 0 (only an earlier pair could refute this answer). The other pairs
+// are decided one by one: first by two parallel planes in doubles, then in integers
 // (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
@@ -23,12 +23,12 @@
 
 namespace farcull {
 
-// The claims of answers, by the kind of question. `objects`: an answer claims that no pair of its
-// objects is nearer. A missing answer claims that no pair of the objects is within the distance
-// asked for. `nearest`: a missing answer claims that neither object is among the k nearest of the
-// other. So no pair of their triangles is nearer than the kth neighbour of either object. If the
-// other object has a lower index than this neighbour, no pair is equally near. `all`: the answers
-// are all pairs within the distance.
+// What answers claim depends on the kind of question. `objects`: an answer claims that no pair of
+// triangles of its objects is nearer. If two objects have no answer, no pair of their triangles is
+// within the distance asked for. `nearest`: if objects a and b have no answer, b is not among the k
+// nearest of a. So no pair is nearer than the kth neighbour of a, nor equally near if b has a lower
+// index than this neighbour. The same holds for b. `all`: the answers are all pairs within the
+// distance.
 
 namespace {
 
@@ -43,14 +43,14 @@ constexpr std::size_t kExamples = 10;
 // At most this many pairs are decided at a time, so that a list of all pairs is never stored.
 constexpr std::size_t kChunk = 1 << 16;
 
-/// Decides the pairs that boxes do not decide, a chunk at a time, and counts them.
+/// Decides the pairs that boxes do not decide, a chunk at a time. Counts the pairs of each class.
 class Undecided {
  public:
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// Sets the threshold of the pairs that are added next: pairs of two objects (self: of one
-  /// object). answer: the answer about these objects, if there is one; none for `all`.
+  /// Sets the threshold of the pairs that are added next. self: the pairs are of one object.
+  /// answer: the pair of the answer about these objects; empty without an answer, and for `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
     now_ = std::make_shared<const Asked>(Asked{threshold, self, answer});
   }
@@ -94,8 +94,8 @@ class Undecided {
     const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
     const bool or_as_far = bound == Bound::below && !before;
     if (is_beyond(s, t, *length, or_as_far)) return &DistanceAccounting::farther_by_exact;
-    // None of the 38 directions proves the triangles far enough apart. So their exact distance has
-    // to be too short; otherwise one of the two computations is wrong.
+    // is_beyond() found no direction that proves the triangles far enough apart. So their exact
+    // distance must be too short; otherwise one of the two computations is wrong.
     const auto order = integer_distance(s, t).squared <=> length->squared;
     if (order > 0 || (order == 0 && or_as_far)) {
       throw std::logic_error(
@@ -134,16 +134,16 @@ class Join {
     if (nothing_is_nearer(threshold) && !answers.empty()) first_ = answers.front().pair;
   }
 
-  /// True if the threshold is "below 0", so that no pair can be within it.
+  /// True if the threshold is "below 0". No distance is below 0.
   static bool nothing_is_nearer(const Threshold& threshold) {
     return threshold.length && threshold.length->squared.over == 0 &&
            threshold.bound == Bound::below;
   }
 
-  /// Settles all pairs of two objects, or of one if a == b. a, b: the roots of their trees.
+  /// Settles all pairs of triangles of two objects (of one if a == b). a, b: roots of the trees.
   void objects(std::uint32_t a, std::uint32_t b) {
     a == b ? one(a) : two(a, b);
-    // An answer whose boxes are too far apart is wrong, but still counts as an answer.
+    // If an answer names a pair that boxes settled, the pair counts in `answers` instead.
     const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
     result_.answers += answers_.size();
     result_.farther_by_boxes -= passed;
@@ -219,7 +219,7 @@ class Join {
   const BoundsTree& trees_;
   const Threshold& threshold_;
   std::span<const ClaimedDistance> answers_;  // answers about these objects, sorted by their pairs
-  std::vector<bool> met_;                     // which answers the join has met
+  std::vector<bool> met_;                     // per answer: true if the join has met its pair
   std::optional<TrianglePair> first_;  // the pair of an answer of distance 0, if there is one
   Undecided& undecided_;
   DistanceAccounting& result_;
@@ -231,7 +231,7 @@ bool is_rounded_root(double distance, const Fraction& square) {
   if (!(distance >= 0)) return false;
   mpq_class squared(square.over, square.under);
   squared.canonicalize();
-  // Compares the root with the middle by comparing their squares.
+  // Compares the root with the middle between two doubles by comparing the squares.
   return integer::is_nearest_double(distance, [&](double next) {
     const mpq_class middle = (integer::rational(distance) + integer::rational(next)) / 2;
     return next < 0 ? 1 : cmp(squared, mpq_class(middle * middle));
@@ -266,7 +266,7 @@ DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistan
 }
 
 void DistanceClaims::find_farthest() {
-  // Per object: other objects in answers about it, each with the squared distance.
+  // For each object: the other object of each answer about it, with the squared distance.
   std::vector<std::vector<std::pair<Fraction, std::uint32_t>>> neighbours(scene_.objects.size());
   for (std::size_t k = 0; k < answers_.size(); ++k) {
     if (!squares_[k]) continue;

@@ -1,10 +1,10 @@
-// Independent accounting for distances: every pair of triangles is proved to be no nearer than the
-// answer allows.
+// Checks answers about distances independently: proves that every pair of triangles is no nearer
+// than the answers allow.
 //
 // The accounting shares no code with the culling, nor with verify/closest.h, which computed the
-// answers. Its boxes are those of the checker of certificates. Each answer is decided in integers
-// (verify/certificate/integer_distance.h). Each pair that neither boxes nor planes prove far apart
-// is decided in integers, too.
+// answers. The boxes are those of the checker of certificates. Each answer is decided in integers
+// (verify/certificate/integer_distance.h). Each pair that neither boxes nor planes prove far enough
+// apart is also decided in integers.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@
 namespace farcull {
 
 /// An answer about the objects a <= b. It claims that `pair` is the first of the nearest pairs of
-/// their triangles, or, for `all`, that `pair` is within the distance asked for. If a == b,
-/// neighbours (verify/exact.h) are left out.
+/// their triangles. For a question of kind `all`, it claims that `pair` is within the distance
+/// asked for. If a == b, neighbours (verify/exact.h) do not count.
 struct ClaimedDistance {
   std::uint32_t a = 0, b = 0;  // indices of the objects
   TrianglePair pair;           // a triangle of a and one of b
@@ -34,7 +34,7 @@ struct ClaimedDistance {
   std::array<Vec3, 2> points;  // nearest points of a and of b, each coordinate rounded once
   std::array<std::uint8_t, 2> features{};     // features of the points, numbered as in
                                               // verify/certificate/integer_distance.h
-  InsideClaim inside = InsideClaim::unknown;  // unknown if the objects meet, or if a == b
+  InsideClaim inside = InsideClaim::unknown;  // unknown if not asked, if a == b, or at distance 0
 };
 
 struct DistanceQuestion {
@@ -48,14 +48,14 @@ struct DistanceQuestion {
   std::size_t k = 1;
   /// Pairs farther apart than this are not asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
-  bool inside = false;   // asks whether one of two disjoint objects is inside the other; not `all`
+  bool inside = false;   // asks whether one of two disjoint objects is in the other; not for `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 
 /// Counts of all pairs of triangles that were asked about. Each pair is in one class: the first
-/// that fits. A pair is *nearer* if it is nearer than its answer, or if it should be an answer
-/// itself. A pair is *earlier* if it is as near as the answer about its objects and precedes the
-/// answer in order, so it should be the answer.
+/// that fits. A pair is *nearer* if it is nearer than the answer about its objects, or if it should
+/// be an answer but is none. A pair is *earlier* if it is as near as the answer about its objects
+/// and comes before the answer in order, so it should be the answer.
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;        // computed from the sizes of the objects
   std::uint64_t answers = 0;            // pairs that the answers name
@@ -81,14 +81,14 @@ struct DistanceAccounting {
   bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }
 };
 
-/// Checks the answers and counts the pairs in each class. answers: sorted by objects, then by
-/// pairs, each once. Throws std::logic_error if they are not so, if an answer names triangles that
-/// its objects do not have, or if the classes do not add up. Memory O(triangles + answers).
+/// Checks the answers and counts the pairs by class. answers: sorted by objects, then by pairs,
+/// each once. Throws std::logic_error if answers are unsorted or repeated, if an answer names
+/// triangles that its objects lack, or if the classes do not add up. Memory O(triangles + answers).
 DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
                                      const DistanceQuestion& question);
 
-// ---- what account_distances() has to prove about the pairs of triangles of two objects, derived
-// from question and answers. For distance_accounting.cpp and its tests.
+// ---- The declarations below are for distance_accounting.cpp and its tests. They derive from
+// question and answers what has to be proved about the triangles of two objects.
 
 /// below: distances less than a length. at_most: distances up to and including the length.
 enum class Bound : std::uint8_t { below, at_most };
@@ -116,7 +116,7 @@ class DistanceClaims {
   /// True if the question is about the objects a <= b.
   bool asked(std::uint32_t a, std::uint32_t b) const;
   /// Returns the number of wrong answers. An answer may be wrong in itself, or because other
-  /// answers show that neither of its objects has the other object among its k nearest.
+  /// answers show that neither of its objects has the other one among its k nearest.
   std::uint64_t wrong(unsigned threads) const;
 
  private:

@@ -1,18 +1,18 @@
-// The predicates about two triangles by CGAL. Only this file and contact_meeting.cpp include CGAL,
-// which compiles slowly. Both include only CGAL's kernel, which is under the LGPL.
+// Implements the predicates about two triangles with CGAL. Only this file and contact_meeting.cpp
+// include CGAL, which compiles slowly. Both include only CGAL's kernel, which is under the LGPL.
 //
-// CGAL's kernel Epick decides exactly here, for reasons that were read from the headers of CGAL
-// 5.5.1. The tests compare it with integer arithmetic.
+// CGAL's kernel Epick decides exactly here. The reasons below were read from the headers of CGAL
+// 5.5.1. The tests compare Epick with integer arithmetic.
 // - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment calls only
 //   orientation_3 and coplanar_orientation_3 of input points (Guigue, Devillers: Fast and robust
-//   triangle-triangle overlap test using orientation predicates, 2003). Both overloads have
-//   preconditions on degeneracy, so triangles are first classified by shape().
+//   triangle-triangle overlap test using orientation predicates, 2003). These two overloads require
+//   that triangles are not degenerate, so shape() classifies triangles first.
 // - Each other do_intersect (segment/segment constructs supporting lines) is one
-//   Filtered_predicate. It runs the whole function, with its constructions, over intervals. If that
-//   leaves a doubt, it runs the function over rationals. Nothing is rounded in between.
+//   Filtered_predicate. It runs the whole function, with its constructions, over intervals. If the
+//   intervals leave a doubt, it runs the function over rationals. Nothing is rounded in between.
 // - Overflow: static filters do not decide if a difference of coordinates exceeds 1e102 (1e153 for
-//   collinearity) or if products could underflow. Intervals are rounded outward, to
-//   infinity if necessary; a product 0 * infinity only widens an interval.
+//   collinearity) or if products could underflow. Then intervals decide. They are rounded outward,
+//   to infinity if necessary; a product 0 * infinity only widens an interval.
 // CGAL's intersection() is never called: with inexact constructions it misses intersections (CGAL
 // issue 6384).
 #include "verify/exact.h"
@@ -78,8 +78,8 @@ Hull rim_at(const Corners& part, const Vec3& v) {
 
 /// Decides about neighbours with one shared position v. Both triangles are unions of convex parts
 /// that contain v. The rim of a part does not contain v, unless the part is v itself. If two parts
-/// share a point other than v, the ray from v through this point leaves one part at its rim while
-/// it is in the other part. So a rim meets the other part.
+/// share a point other than v, the ray from v through this point leaves one part, at its rim, while
+/// still in the other part. So a rim meets the other part.
 bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
   const Vec3& v = a[i];
   for (const Corners& s : parts_at(a, i)) {
@@ -103,7 +103,7 @@ bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s
     return CGAL::coplanar(point(p), point(q), point(r), point(s)) &&
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
-  // Both triangles are segments on the line of p and q. They share more than the edge iff they
+  // Both triangles are segments on the line of p and q. They share more than the edge iff both
   // extend beyond the same end of the edge.
   const auto ends = std::minmax(p, q, lexicographically_less);
   const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };

@@ -1,20 +1,20 @@
-// Exact answers about triangles in double coordinates. Culling is measured against them. The method
-// `exact` decides every pair that counts, without culling.
+// Decides exactly whether triangles with double coordinates collide. Culling is measured against
+// these answers. The method `exact` decides every pair that counts, without culling.
 //
-// Semantics: a triangle is the closed convex hull of its three corners with the doubles as given,
-// so touching counts, and a degenerate triangle is a segment or a point. Every decision is the sign
-// of a polynomial that is evaluated exactly (filtered, then rational); no rounded construction ever
-// decides.
+// Semantics: a triangle is the closed convex hull of its three corners with the doubles as given.
+// So touching counts, and a degenerate triangle is a segment or a point. Every decision is the
+// exact sign of a polynomial: doubles with error bounds decide most signs, and exact arithmetic
+// decides the others. No rounded construction ever decides.
 //
 // Neighbours are two triangles of one object that share a vertex position (-0.0 equals 0.0). Their
 // *shared part* is the shared positions and the segments between any two of them. The shared part
-// is no collision. Neighbours collide iff their intersection is more than the shared part. With one
+// is no collision: neighbours collide iff their intersection is more than the shared part. With one
 // shared position, they collide iff they have another common point. With two, they collide iff the
-// intersection is more than the edge between the positions. Triangles with the same three corners
+// intersection is more than the edge between these positions. Triangles with the same three corners
 // collide unless the corners are collinear.
 //
 // With a clearance D > 0, two triangles that are not neighbours collide iff their distance is at
-// most D. D does not matter to neighbours, whose distance is 0.
+// most D. The clearance has no effect on neighbours, since their distance is 0.
 //
 // Preconditions everywhere: coordinates are finite (subnormals, 1e308 and -0.0, which equals 0.0,
 // are fine); scenes satisfy validate(). Functions of two triangles need a thread that rounds to
@@ -109,13 +109,13 @@ struct FirstCollisions {
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes pairs, the last in the common order of both lists first, until at most `limit` pairs are
-/// left. Returns true if pairs were removed. Does not change counts. Precondition: both lists are
+/// Keeps the first `limit` pairs in the common order of both lists of pairs, and removes the
+/// others. Returns true if pairs were removed. Does not change counts. Precondition: both lists are
 /// sorted.
 bool keep_first(std::uint64_t limit, Collisions& collisions);
 
 /// decide() for successive frames of a scene. The answer about a pair depends only on the corners
-/// of its triangles, so if neither triangle moved, the answer of the last frame is still right.
+/// of its triangles. So if neither triangle moved, the answer of the last frame is still right.
 class FrameDecider {
  public:
   /// Like farcull::decide(). Stores its answers if the candidates are sorted and distinct. Reuses
@@ -127,11 +127,11 @@ class FrameDecider {
   std::size_t decided() const { return decided_; }
 
  private:
-  std::optional<std::uint64_t> frame_;  // the frame of answers_; none if they are not valid
+  std::optional<std::uint64_t> frame_;  // the frame of answers_; empty if answers_ is not valid
   double clearance_ = 0;
   bool neighbours_ = true;
   std::vector<TrianglePair> pairs_;
-  std::vector<PairAnswer> answers_;  // about pairs_
+  std::vector<PairAnswer> answers_;  // one per pair in pairs_
   std::size_t decided_ = 0;
 };
 
@@ -141,14 +141,14 @@ struct ExactResult : Collisions {  // both lists sorted, each pair once
   std::uint64_t box_pairs = 0;     // pairs that count and have overlapping boxes: no gap
                                    // along an axis, computed in double, is above the clearance
   std::uint64_t ignored = 0;       // pairs with overlapping boxes whose objects are ignored
-  double join_ms = 0;              // wall clock of making and joining the boxes
+  double join_ms = 0;              // wall-clock time for building and joining the boxes
   double predicates_ms = 0;        // mean time of the deciding threads, plus time for sorting
 };
 
 /// The method `exact`: a tree of boxes in doubles finds the pairs whose boxes overlap, and decide()
 /// decides these pairs in the threads that find them. Memory O(triangles + colliding pairs), since
 /// candidates are not stored. The tree (core/boxes/join.h) uses no view, no error budget and no
-/// float. A test compares its pairs with the pairs of CGAL's join, which shares no code with the
+/// float. A test compares the tree's pairs with those of CGAL's join, which shares no code with the
 /// tree. ignored: pairs of objects that do not count, as returned by in_order().
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
                                 std::span<const ObjectPair> ignored = {});

@@ -1,4 +1,4 @@
-// The coordinates of a point are quotients of integers, so each answer is the sign of an integer.
+// All numbers are rationals (GMP), so nothing is rounded, except a double that is returned.
 #include "verify/exact_point.h"
 
 #include <gmpxx.h>
@@ -32,7 +32,7 @@ std::pair<int, int> indices(const mpq_class& x, int size) {
   return {std::max(lower, 0), std::min(upper, size - 1)};
 }
 
-// Returns the larger number, cut off to a double. A positive number does not become 0.
+// Returns the larger number, rounded toward 0 to a double. A positive number does not become 0.
 double larger(const mpq_class& a, const mpq_class& b) {
   const mpq_class& most = a > b ? a : b;
   const double cut = most.get_d();

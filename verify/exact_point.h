@@ -1,6 +1,6 @@
-// A point of a triangle with exact coordinates, for tests of the lemmas. Decides which pixels
-// contain the point's image, and whether two samples bound its depth. Uses only integers (GMP), and
-// neither the budget nor an offset.
+// Decides exactly which pixels contain the image of a point of a triangle, and whether two depth
+// samples enclose the point's depth. For tests of the lemmas in docs/reliability.md. Uses only
+// rational numbers (GMP), and neither the error budget nor an offset.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace farcull {
 
-/// A point of the closed triangle with these corners, in pixel space: (w0 c0 + w1 c1 + w2 c2) / (w0
-/// + w1 + w2).
+/// The point (w0 c0 + w1 c1 + w2 c2) / (w0 + w1 + w2) of the closed triangle with the corners c0 to
+/// c2 in pixel space. w0 to w2 are `weights`.
 struct ExactPoint {
   std::array<Vec3, 3> corners;  // px, finite
   std::array<int, 3> weights;   // >= 0; the sum is > 0
@@ -26,14 +26,14 @@ struct Pixel {
 /// window has width x height px and is centred on the origin.
 std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height);
 
-/// True iff entry <= z(point) <= exit, exactly. False if a sample is not finite.
+/// True iff entry <= z(point) <= exit (px), decided exactly. False if entry or exit is not finite.
 bool bounded(const ExactPoint& point, float entry, float exit);
 
-/// Returns how far z(point) is outside the samples: the larger of entry - z and z - exit, computed
-/// exactly and rounded toward 0 to a double. At most 0 iff bounded(). Precondition: finite samples.
+/// Returns how far z(point) is outside [entry, exit], px: the larger of entry - z and z - exit,
+/// rounded toward 0, but never from above 0 to 0. Precondition: finite entry and exit.
 double beyond(const ExactPoint& point, float entry, float exit);
-/// beyond() for depths of a depth buffer: the larger of entry - D and D - exit, with
-/// D = z(point) * scale + 1/2.
+/// Like beyond(), but compares depth-buffer values: returns the larger of entry - D and D - exit,
+/// with D = z(point) * scale + 1/2.
 double beyond_stored(const ExactPoint& point, float entry, float exit, float scale);
 
 }  // namespace farcull

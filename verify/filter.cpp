@@ -1,12 +1,12 @@
 // Compiles the filters with the proved bounds. filter_pairs() runs on SIMD lanes: each lane has a
-// pair of its own. Every operation rounds once, so the answers are the same as those of the
-// scalars. The operations on lanes are defined here, since verification shares no code with the
-// canvas (core/native) that it checks.
+// pair of its own. Every operation rounds once, so the answers are the same as those of
+// filter_planes(). The operations on lanes are defined here, since verification shares no code with
+// the canvas (core/native) that it checks.
 //
 // Pairs are gathered in batches, coordinate by coordinate, and compared with the planes of both
-// triangles. The few pairs whose triangles cross each other's planes are gathered again, so that
-// the lanes stay full. Then the corners are reordered for the comparison along the line of the
-// planes.
+// triangles. The few pairs whose triangles cross each other's planes are gathered again, with
+// reordered corners, so that all lanes are used. These pairs are compared along the common line of
+// the planes.
 #include "verify/filter.h"
 
 #include <algorithm>
@@ -55,8 +55,8 @@ HWY_INLINE Real operator-(Real a, Real b) { return Real(hn::Sub(a.v, b.v)); }
 HWY_INLINE Real operator*(Real a, Real b) { return Real(hn::Mul(a.v, b.v)); }
 HWY_INLINE Truth operator<(Real a, Real b) { return Truth(hn::Lt(a.v, b.v)); }
 HWY_INLINE Truth operator>(Real a, Real b) { return Truth(hn::Gt(a.v, b.v)); }
-// min is b < a ? b : a, and max is a < b ? b : a, as in std::min() and std::max(), even for NaN. On
-// x86 each of them is one instruction with exchanged operands.
+// min(a, b) is b < a ? b : a, and max(a, b) is a < b ? b : a, as in std::min() and std::max(), even
+// for NaN. On x86, each is one instruction with exchanged operands.
 HWY_INLINE Real min(Real a, Real b) {
 #if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
   return Real(hn::Min(b.v, a.v));
@@ -74,8 +74,8 @@ HWY_INLINE Real max(Real a, Real b) {
 HWY_INLINE Real abs(Real a) { return Real(hn::Abs(a.v)); }
 HWY_INLINE Real sqrt(Real a) { return Real(hn::Sqrt(a.v)); }
 
-/// One corner of each of kWide pairs in memory: x of all corners, then y, then z. Each of these
-/// rows is aligned, and begins `stride` numbers after the row before.
+/// One corner of each of kWide pairs, in memory as three rows: all x, all y, all z. Each row is
+/// aligned. A row begins `stride` numbers after the row before.
 template <int stride>
 struct PointOf {
   const PlainReal* at = nullptr;
@@ -84,7 +84,7 @@ struct PointOf {
   HWY_INLINE Real z() const { return Real(hn::Load(Tag(), at + 2 * stride)); }
 };
 
-constexpr int kBatch = 64;  // a batch of this size fits into the fastest cache
+constexpr int kBatch = 64;  // a batch of this size fits into the first-level cache
 using Point = PointOf<kBatch>;
 
 #define FAR_FILTER HWY_INLINE
@@ -116,7 +116,7 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
   const std::size_t last = pairs.size() - 1;
   for (int i = 0; i < count; ++i) {
     const TrianglePair& pair = pairs[from + i];
-    // Prefetches indices far ahead, and corners less far ahead.
+    // Prefetches vertex indices far ahead, and corners less far ahead.
     __builtin_prefetch(&scene.triangles[pairs[std::min(from + i + 2 * kAhead, last)].b]);
     prefetch(scene, pairs[std::min(from + i + kAhead, last)].b);
     if (!one) gather_one(pair.a, 0, i);
@@ -124,15 +124,15 @@ HWY_INLINE void gather(const Scene& scene, std::span<const TrianglePair> pairs, 
   }
 }
 
-/// Fills the lanes beyond `count` with the last pair. Returns the end of the filled lanes.
+/// Fills the unused lanes of the last vector with copies of the last pair. Returns their end.
 HWY_INLINE int fill_lanes(Batch& batch, int count) {
   const int end = (count + kWide - 1) / kWide * kWide;
   for (auto& row : batch.row) std::fill(row + count, row + end, row[count - 1]);
   return end;
 }
 
-/// Collects pairs whose triangles cross each other's planes. When a batch is full, compares them
-/// along the line of the planes.
+/// Collects pairs whose triangles cross each other's planes. When a batch is full, compares its
+/// pairs along the common line of the planes.
 class Crossings {
  public:
   Crossings(double clearance, std::span<Triage> answers)

@@ -1,11 +1,11 @@
-// Answers about two triangles from plain doubles, each proved by a forward error bound. If rounding
-// leaves a doubt, the answer is `unknown`, and exact arithmetic decides (verify/exact).
+// Decides about two triangles in plain doubles. A forward error bound proves each answer. If
+// rounding leaves a doubt, the answer is `unknown`, and exact arithmetic decides (verify/exact).
 //
 // These filters decide most pairs that reach the exact tests, so they are fast: they allocate
-// nothing, do not change the rounding mode, and branch only on whether they can answer.
+// nothing, do not change the rounding mode, and branch only to return an answer early.
 //
 // Preconditions: finite coordinates of any magnitude; round to nearest; subnormals are not flushed;
-// products and sums are not contracted.
+// products and sums are not contracted to fused operations.
 #pragma once
 
 #include <array>
@@ -21,27 +21,27 @@ namespace farcull {
 /// cache.
 inline constexpr std::size_t kAhead = 8;
 
-/// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks only at the planes of
-/// the triangles.
+/// Decides whether the distance of the triangles is at most `clearance` (finite, >= 0). Uses only
+/// the planes of the triangles.
 /// - yes: the triangles cross.
 /// - no: one triangle is on one side of the other's plane and farther from it than the clearance;
-///   or the clearance is 0 and the triangles miss each other along the line of the planes.
+///   or the clearance is 0 and the triangles miss each other along the common line of their planes.
 /// - unknown: a triangle is degenerate, the triangles touch without crossing, or rounding leaves a
 ///   doubt.
 Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                      double clearance = 0);
 
-/// Do the triangles (v, a1, a2) and (v, b1, b2) share more than v?
+/// Decides whether the triangles (v, a1, a2) and (v, b1, b2) share more than v.
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2);
 
-/// Do the triangles (p, q, r) and (p, q, s) share more than the segment from p to q? Never `yes`:
-/// they can share more only if the four points lie in one plane, which doubles do not prove.
+/// Decides whether (p, q, r) and (p, q, s) share more than the segment from p to q. Never `yes`,
+/// since doubles do not prove that four points lie in one plane.
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
-/// Is the distance of the triangles at most `clearance` (> 0)? Decides by two points close to each
-/// other and the direction between the points. Does not look for points where an edge crosses a
-/// face. `unknown` if distance and clearance differ by less than about 1e-14 of the pair's extent.
+/// Decides whether the distance is at most `clearance` (> 0), by two points close to each other and
+/// the direction between them. Does not look for points where an edge crosses a face. `unknown` if
+/// distance and clearance differ by less than about 1e-14 of the pair's extent.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 /// Sets answers[i] to the answer of filter_planes() about pairs[i] and the clearance. The answers

@@ -1,7 +1,7 @@
 // Compares two triangles with each other's planes, and along the line where the planes cross. This
 // file is compiled for scalars (in filter_scalars.h, which derives the bounds) and for lanes (in
 // filter.cpp, where each lane has a pair of its own). The including namespace defines
-//   Real, Truth   a number and an answer for each lane; PlainReal is one number for all lanes
+//   Real, Truth   a number and a truth value for each lane; PlainReal is one number for all lanes
 //   Point         a corner, with x(), y() and z()
 //   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.
 // The only branches are early returns once all lanes are decided.
@@ -42,8 +42,8 @@ FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
 
 // ---- sides of planes ----
 
-/// The sides of the plane of a triangle t on which the corners of a triangle s lie. The sign of
-/// value[i] is the side of corner i; it is proved if |value[i]| > bound.
+/// On which side of the plane of a triangle t the corners of a triangle s lie. The sign of value[i]
+/// is the side of corner i. The sign is proved if |value[i]| > bound.
 struct Sides {
   Real value[3];
   Real bound;
@@ -61,9 +61,9 @@ struct Sides {
   }
 };
 
-/// Returns the clearance times the length of the normal, rounded up. The computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact normal per axis. kLeastSquare covers squares that
-/// underflow. kNormalRounding covers the 8 roundings that follow.
+/// Returns an upper bound of the clearance times the length of the exact normal. The computed
+/// normal is off by at most ((1 + u)^4 - 1) (1 - u)^-4 m per axis, u = 2^-53. kLeastSquare covers
+/// squares that underflow. kNormalRounding covers the 8 roundings of the last expression.
 FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
   const Real length = sqrt(dot(normal.n, normal.n) + kLeastSquare);
   return clearance * (length + sum(normal.m) * kNormalLength) * (1 + kNormalRounding) + 0x1p-1000;
@@ -83,8 +83,8 @@ FAR_FILTER Sides sides(const Point* s, const Point* t, PlainReal clearance) {
 /// The answers that the planes alone give.
 struct AgainstPlanes {
   Truth apart;     // a triangle is on one side of the other's plane, beyond the clearance
-  Truth crossing;  // each is on both sides of the other's plane; false if `apart` is true
-  Sides a, b;      // of the corners of a and of b; `a` is not valid if every lane is apart
+  Truth crossing;  // each triangle has corners on both sides of the other's plane
+  Sides a, b;      // `a`: sides of a's corners, not valid if every lane is apart; `b`: of b's
 };
 
 template <class Bounds>
@@ -105,8 +105,8 @@ struct OnLine {
   Truth apart, meeting;  // if neither is true, rounding leaves a doubt
 };
 
-/// Compares the segments that the two triangles cover on the line of their planes. The corners are
-/// in the order of corner_order().
+/// Compares the segments in which the triangles meet the common line of their planes. The corners
+/// are in the order of corner_order().
 template <class Bounds>
 FAR_FILTER OnLine compare_on_line(const Point& a0, const Point& a1, const Point& a2,
                                   const Point& b0, const Point& b1, const Point& b2) {

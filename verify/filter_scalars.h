@@ -1,5 +1,5 @@
-// The filters (verify/filter.h) on scalars, and the derivations of their bounds. The bounds are a
-// template parameter.
+// The filters (verify/filter.h) on scalars, and the derivations of their error bounds. The bounds
+// are a template parameter.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace farcull {
 
-/// Corners of a and of b, by number. One corner of each triangle lies alone on its side of the
-/// other's plane. The two edges from this corner cross the line of the planes; the triangle covers
-/// the segment between the crossings. The other two corners are ordered so that the other
-/// triangle's lone corner is on the positive side of this triangle's plane. So the ends of each
-/// segment are in a known order along the line, and two determinants compare the segments (Guigue,
+/// An order of the corners of a and of b, by number. One corner of each triangle lies alone on its
+/// side of the other's plane. The two edges from this corner cross the common line of the planes;
+/// the triangle covers the segment between the crossings. The other two corners are ordered so that
+/// the other triangle's lone corner is on the positive side of this triangle's plane. So the order
+/// of a segment's ends on the line is known, and two determinants compare the segments (Guigue,
 /// Devillers: Fast and robust triangle-triangle overlap test using orientation predicates, 2003).
 struct CornerOrder {
   std::array<std::uint8_t, 3> a, b;  // the lone corner comes first
@@ -27,7 +27,7 @@ struct CornerOrder {
 /// a_above: bit i is set if corner i of a is on the positive side of the plane of b. b_above:
 /// likewise for corners of b. Precondition: one or two bits of each are set.
 constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
-  // The corner that is alone on its side, indexed by the bits of the corners above.
+  // The corner that is alone on its side. Index: the set of corners on the positive side.
   constexpr std::array<std::uint8_t, 8> kAlone = {0, 0, 1, 2, 2, 1, 0, 0};
   const auto from = [](std::uint8_t alone) {
     return std::array<std::uint8_t, 3>{alone, static_cast<std::uint8_t>((alone + 1) % 3),
@@ -52,7 +52,7 @@ namespace farcull::filters {
 
 // ---- against planes ----
 //
-// Gappa proves the constants (docs/proofs.md, `filter.*`). The reasons follow. The bounds follow
+// Gappa proves the constants (docs/proofs.md, `filter.*`). The reasons follow, with the methods of
 // Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3. Shewchuk, Adaptive
 // Precision Floating-Point Arithmetic, 1997, bounds the same determinant. u = 2^-53.
 //
@@ -62,18 +62,18 @@ namespace farcull::filters {
 // permanent P is the sum of the exact |e_i f_j w_k|. P is computed by the same operations on
 // magnitudes. Larger |w_k| only make P larger. With two more roundings for the bound, 9 u suffice.
 //
-// Product of two normals: it has 11 roundings, and its bound has 13; 12 u suffice. Projection of w
-// = x - o onto a given direction, whose doubles count as exact: it has 4 roundings, and its bound
-// has 6. The 9 u for sides of planes cover this.
+// Product of two normals: the product has 11 roundings, its bound has 13, and 12 u suffice.
+// Projection of w = x - o onto a direction whose doubles count as exact: the projection has 4
+// roundings, its bound has 6, and the 9 u for sides of planes suffice.
 //
-// Underflow. Differences and sums of doubles are exact if they are subnormal. A product is off by
-// at most 2^-1075 more; all later roundings make that at most 2^-1073 (|w|_1 + 2) for the
-// determinant, and likewise for the other products. `absolute` is more than 2^70 times that. So it
-// and its products with numbers >= 1 are normal numbers, which every processor handles fast.
+// Underflow. Differences and sums of doubles are exact if they are subnormal. A product that
+// underflows is off by up to 2^-1075 more. In the determinant, these errors sum to at most
+// 2^-1073 (|w|_1 + 2), and likewise in other products. `absolute` is more than 2^70 times larger.
+// So `absolute` and its products with numbers >= 1 are normal numbers, which are fast.
 //
-// Overflow. For every operation of the determinant the permanent has the same operation on
-// magnitudes, whose result is at least as large, since rounding is monotone. So if anything
-// overflows, the bound is infinite or not a number, and no comparison with it holds.
+// Overflow. For every operation of the determinant, the permanent has the same operation on
+// magnitudes. Its result is at least as large, since rounding is monotone. So if anything
+// overflows, the bound is infinite or not a number, and every comparison with the bound is false.
 
 using PlainReal = double;
 using Real = double;
@@ -139,11 +139,11 @@ Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
 
 // Corners are relative to v; N = a1 x a2 and M = b1 x b2. The signs of A1 = M . a1 and A2 = M . a2
 // are the sides of b's plane on which a's corners lie. The signs of B1 = N . b1 and B2 = N . b2 are
-// the sides of a's plane for b's corners. If A1 and A2 have the same sign, a meets b's plane only
-// in v. The same holds for B1 and B2. Otherwise each triangle meets the line of both planes in a
-// segment from v. The segments have the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 -
-// b2 B1): these are sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N
-// and b1 B2 - b2 B1 = N x M. So the directions are the same iff A2 and B2 differ in sign.
+// the sides of a's plane on which b's corners lie. If A1 and A2 have the same sign, a meets b's
+// plane only in v. The same holds for B1, B2 and b. Otherwise each triangle meets the line of both
+// planes in a segment from v. The segment of a has the direction sign(A2) (a1 A2 - a2 A1), that of
+// b has sign(B2) (b1 B2 - b2 B1). Now a1 A2 - a2 A1 = M x N and b1 B2 - b2 B1 = N x M. So the
+// directions are the same iff A2 and B2 differ in sign.
 template <class Bounds>
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
                             const Vec3& b2) {
@@ -169,11 +169,11 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
              : Triage::unknown;
 }
 
-// The product (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of
-// r - p and s - p that are perpendicular to the edge. If it is negative, the plane through the edge
-// that is perpendicular to the first part has r on one side and s on the other. Then the triangles
-// share only the edge. In a mesh the product is negative at every edge that is not folded sharply.
-// Triangles also share only the edge if s is off the plane of (p, q, r).
+// The scalar product of (q - p) x (r - p) and (q - p) x (s - p) is |q - p|^2 times the scalar
+// product of the parts of r - p and s - p perpendicular to the edge. If it is negative, the plane
+// through the edge that is perpendicular to the first part has r on one side and s on the other.
+// Then the triangles share only the edge. In a mesh, the product is negative at every edge not
+// folded sharply. The triangles also share only the edge if s is off the plane of (p, q, r).
 template <class Bounds>
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Triple e = difference(q, p);
@@ -190,39 +190,39 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 //
 // Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
 // 5.1.5 and 5.1.9). The points can prove that the triangles are near, and the direction between the
-// points can prove that they are not. If neither is proved, the answer is `unknown`; so a wrong
-// guess never makes a wrong answer. Gappa proves the constants (docs/proofs.md, `distance.*`). The
-// reasons follow.
+// points can prove that the triangles are far. If neither is proved, the answer is `unknown`. So a
+// wrong guess never gives a wrong answer. Gappa proves the constants (docs/proofs.md,
+// `distance.*`). The reasons follow.
 //
-// All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by at most u
-// |x|. R is the largest |coordinate| of these differences.
+// All corners are taken relative to o = a[0]. A rounded difference x = corner - o is off by at most
+// u |x|. R is the largest |coordinate| of these differences.
 //
-// Near. p is a sum of x_i with weights >= 0 that sum to 1 up to 4 u: two weights are computed, and
-// the third is 1 minus the others, or 0 if rounding makes that negative. Per axis, p is off from a
-// point of the triangle by less than 9 u R, and so is q. Their difference is off by less than 35 u
-// R in length. With the roundings of its length and two sums that is 55 u R in all; `point` is 64
-// u.
+// Near. The guessed point p of a is a sum of corners x_i with weights >= 0. Two weights are
+// computed; the third is 1 minus the others, or 0 if rounding makes that negative. So the sum of
+// the weights is 1 up to 4 u. Per axis, p is off from a point of a by less than 9 u R. The same
+// holds for q and b. q - p is off by less than 35 u R in length. The roundings of its length and
+// two sums give 55 u R in all; `point` is 64 u.
 //
 // Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. The computed
-// difference is off by less than 12 u M, where M is the product of the magnitudes of d with the
-// largest |x| per axis. `gap` is 16 u. The computed length of d, times the clearance, is off by
-// less than 4 u of itself, which the factor 1 + 8 u covers.
+// difference is off by less than 12 u M. Here M is the sum of |d_k| times the largest |x_k| over
+// the axes k. `gap` is 16 u. The computed length of d, times the clearance, is off by less than 4 u
+// of itself; the factor 1 + 8 u covers this.
 //
 // Underflow: products are off by at most 2^-1075, far below `absolute`. The computed length of d is
-// accurate only if its square is at least 2^-900. If it is less, "near" uses the length 2^-450, and
-// "far" answers `unknown`. Overflow: as for planes; infinities and NaNs satisfy no comparison.
+// accurate only if its square is at least 2^-900. For a smaller square, "near" uses the length
+// 2^-450, and "far" answers `unknown`. Overflow: as for planes.
 
 using Corners = std::array<Vec3, 3>;
 
-/// The place of a point: 0 to 2 for an edge (i: from corner i to the next), kCorner + i for corner
-/// i, or kFace.
+/// Codes for the place of a point: i (0 to 2) for the edge from corner i to the next corner,
+/// kCorner + i for corner i, and kFace for the face.
 constexpr int kCorner = 3, kFace = 6;
 
 struct Closest {
   double squared = std::numeric_limits<double>::infinity();
   Vec3 difference = Vec3::Zero();
   int of_a = kCorner, of_b = kCorner;  // the places of the two points
-  double s = 0, t = 0;  // on an edge: how far along it; on a face: the weights of corners 1 and 2
+  double s = 0, t = 0;  // edges: fractions along a's and b's edge; face: weights of corners 1 and 2
 
   void offer(const Vec3& d, int on_a, int on_b, double along_a, double along_b) {
     const double square = d.squaredNorm();
@@ -232,8 +232,8 @@ struct Closest {
 
 inline double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // returns 0 for NaN
 
-/// Offers to `closest` the difference from p + s u to q + t v, the closest points of edge i of a
-/// and edge j of b except for rounding; u = p_end - p, v = q_end - q, s and t in [0, 1].
+/// Offers two points to `closest`: p + s u of edge i of a and q + t v of edge j of b, with s and t
+/// in [0, 1]. They are the closest points of these edges except for rounding.
 inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Closest& closest) {
   const Vec3 &p = a[i], &p_end = a[(i + 1) % 3], &q = b[j], &q_end = b[(j + 1) % 3];
   const Vec3 u = p_end - p;
@@ -250,8 +250,8 @@ inline void offer_segments(const Corners& a, int i, const Corners& b, int j, Clo
   closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s), i, j, s, t);
 }
 
-/// If corner i of triangle `of` lies over the face of t, offers the difference from the corner to
-/// the face. sense: 1 if `of` is a; -1 if `of` is b, and the opposite vector is offered.
+/// If corner i of triangle `of` projects into the face of t, offers the difference from the corner
+/// to the face. sense: 1 if `of` is a; -1 if `of` is b, and the opposite vector is offered.
 inline void offer_face(const Corners& of, int i, const Corners& t, double sense, Closest& closest) {
   const Vec3& p = of[i];
   const Vec3 e = t[1] - t[0];
@@ -332,10 +332,10 @@ struct DistanceBounds {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// Lower bound: the distance is at least gap_along() / |d|. The quotient has one rounding, the
-/// computed length is off by 3 u, and the factor 1 - 8 u, itself rounded once, covers both. The
-/// quotient does not underflow: a gap above 0 is a multiple of the last bit of the doubt, hence
-/// above 2^-104 |d|^2 (no |d_k| is much more than twice the extent), and |d| is at least 2^-450.
+/// Lower bound: the distance is at least gap_along() / |d|. The quotient has one rounding, and the
+/// computed length is off by 3 u. The factor 1 - 8 u, itself rounded once, covers both. The
+/// quotient does not underflow: |d| is at least 2^-450, and a gap above 0 is a multiple of the last
+/// bit of `doubt`, hence above 2^-104 |d|^2 (no |d_k| is much more than twice the extent).
 template <class Bounds>
 DistanceBounds distance_bounds(const Near& near) {
   const double squared = near.closest.squared;

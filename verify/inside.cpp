@@ -2,8 +2,8 @@
 // point x in direction d. The sign of d . ((p - x) x (q - x)) tells on which side of the line an
 // edge from p to q passes. If all three edges of a triangle pass on one side, the line crosses the
 // triangle. The sign of the determinant of the corners relative to x tells whether the crossing is
-// ahead of x or behind it. Doubles find the signs, with the bound of filter_scalars.h; if they
-// leave a doubt, rationals do.
+// ahead of x or behind x. Doubles with the bound of filter_scalars.h decide most signs, rationals
+// the others.
 #include "verify/inside.h"
 
 #include <algorithm>
@@ -42,17 +42,17 @@ int triple_sign(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& d, bool
   return sgn(dot(third, cross(minus(exact(p), at), minus(exact(q), at))));
 }
 
-/// Returns 0 if the ray from x misses the triangle, otherwise 1 or -1 by the side from which the
-/// ray comes. Empty if the line of the ray meets an edge or lies in the triangle's plane.
-/// Precondition: x is not on the triangle.
+/// Returns 0 if the ray from x in direction d misses the triangle, otherwise 1 or -1 by the side
+/// from which the ray comes. Empty if the line of the ray meets an edge or lies in the triangle's
+/// plane. Precondition: x is not on the triangle.
 std::optional<int> crossing(const Corners& t, const Vec3& x, const Vec3& d) {
   std::array<int, 3> side{};
   for (int i = 0; i < 3; ++i) side[i] = triple_sign(t[i], t[(i + 1) % 3], x, d, false);
   const auto [least, most] = std::minmax({side[0], side[1], side[2]});
   if (least < 0 && most > 0) return 0;  // the line misses the triangle
   if (least == 0 || most == 0) return std::nullopt;
-  // The line crosses the plane at x + s d, where s is this determinant divided by a sum of three
-  // products with the signs `side`.
+  // The line crosses the plane at x + s d. s is the determinant below, divided by the sum of three
+  // products whose signs are `side`.
   return triple_sign(t[0], t[1], x, t[2], true) == side[0] ? side[0] : 0;
 }
 
@@ -77,10 +77,10 @@ struct Crossings {
   bool odd = false;          // true if the number of crossings is odd
 };
 
-/// Returns the crossings of a ray; empty if crossing() is empty for a triangle. If the ray is along
-/// the first axis, boxes show that it misses most triangles. Triangles that are segments or points
-/// are left out, since no ray in general position crosses them. (If x is on the line of such a
-/// triangle, all signs are 0 for every direction.)
+/// Returns the crossings of a ray; empty if crossing() is empty for a triangle. first_axis: d is
+/// (1, 0, 0), so boxes show that the ray misses most triangles. Triangles that are segments or
+/// points are left out, since no ray in general position crosses them. (If x is on the line of such
+/// a triangle, crossing() is empty for every direction.)
 std::optional<Crossings> crossings(const Scene& scene, const Object& object, const Vec3& x,
                                    const Vec3& d, bool first_axis) {
   Crossings out;
@@ -105,9 +105,9 @@ std::optional<Crossings> crossings(const Scene& scene, const Object& object, con
 Crossings crossings(const Scene& scene, const Object& object, const Vec3& x) {
   if (const auto answer = crossings(scene, object, x, Vec3(1, 0, 0), true)) return *answer;
   // For each edge of a triangle that is not degenerate, the directions with an empty answer lie in
-  // a plane. (This holds for x in the triangle's plane, too: other directions give two opposite
-  // signs.) With 2^52 values per axis each such plane holds at most 2^-52 of all directions. So
-  // with 2^34 edges at most one draw in 2^18 has an empty answer.
+  // a plane. (This holds for x in the triangle's plane, too: for other directions the signs of two
+  // edges are opposite.) With 2^52 values per axis, each plane holds at most 2^-52 of all
+  // directions. So with 2^34 edges, at most one random direction in 2^18 has an empty answer.
   RandomNumbers random(1);
   constexpr int kDraws = 16;
   for (int k = 0; k < kDraws; ++k) {
@@ -142,8 +142,8 @@ struct Edge {
   std::uint32_t triangle = 0;
 };
 
-/// Calls group(edges) once for all edges with the same two ends. Stops at the first call that
-/// returns false. Returns true if all calls returned true.
+/// Calls group(edges) once for each set of edges with the same two ends. Stops at the first call
+/// that returns false. Returns true if all calls returned true.
 bool each_edge(std::span<const Edge> edges, const auto& group) {
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {

@@ -1,4 +1,4 @@
-// Whether one object lies inside another, exactly.
+// Decides exactly whether a point lies inside an object.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its
 // triangles; triangles with two equal corners do not count. A closed mesh is *oriented* if its
@@ -25,19 +25,19 @@ enum class Surface : std::uint8_t { open, closed, doubled, oriented };
 Surface surface_of(const Scene& scene, std::uint32_t object);
 /// Like surface_of(), but also finds doubled triangles. `doubled`: the surface is oriented, but at
 /// some edge two triangles of one plane lie on each other, as in a file that has both sides of each
-/// face. Such a pair cancels in the winding number, which may then be 0 in a place that the pairs
-/// enclose. `open`: the surface is not closed, or a triangle occurs more than once and its
-/// occurrences do not cancel in orientation.
+/// face. Two such triangles cancel in the winding number. So the winding number may be 0 at a point
+/// that the surface encloses. `open`: the surface is not closed, or a triangle occurs more than
+/// once and its occurrences do not cancel in orientation.
 Surface doubted_surface_of(const Scene& scene, std::uint32_t object);
 /// True iff the object is closed.
 bool is_closed(const Scene& scene, std::uint32_t object);
 
 /// Returns where the point (finite) lies; `on` even if the object is not closed. If a ray meets an
-/// edge or runs in a triangle's plane, another direction is tried. Preconditions of verify/exact.h.
-/// Throws std::logic_error if the scene does not have the object.
+/// edge or runs in a triangle's plane, another direction is tried. The preconditions are those of
+/// verify/exact.h. Throws std::logic_error if the scene does not have the object.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);
 
-/// Like the function above, but takes the result of surface_of(), which is slow to compute.
+/// Like the function above. surface: the result of surface_of() or doubted_surface_of().
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point, Surface surface);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Triangles, lines and solids that are hard for the exact offset (verify/kernel_check.h).
+// Draws random triangles and solids that are hard for the exact offset (offsets/minkowski.glsl).
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ inline Triangle random_triangle(Draws& random, int kind) {
   switch (kind) {
     case 0:
       return all([&](int) { return random.cube(20); });
-    case 1: {  // aspect 1e3 .. 1e12
+    case 1: {  // length 1e3 to 1e12 times the width
       const Vec3 e = random.scaled3(0, 9);
       const double thin = e.norm() * std::pow(10, -random.uniform(3, 12));
       return {at - e, at + e, at + e * random.uniform(-1, 1) + random.cube(thin)};
@@ -131,8 +131,8 @@ inline Case random_case_at(Draws& random, int kind, float cx, float cy) {
 inline float number(double x) { return static_cast<float>(x); }
 
 /// Returns a solid whose floats are drawn directly, not computed from a triangle. It may have
-/// zeros, denormals, equal coordinates, edges along and across the line, lengths on either side of
-/// the kernel's 1e-12, a radius from 0 to 2^20, and any cuts.
+/// zeros, subnormals, equal coordinates, edges along and across the line, squared lengths on both
+/// sides of the kernel's threshold 1e-12, a radius from 0 to 2^20, and any depths zlo <= zhi.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;
@@ -165,7 +165,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   const double mid = s[0][2] + random.scaled(-6, 8), thick = std::abs(random.scaled(-6, 12));
   s[0][3] = number(mid - thick);
   s[2][3] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(3) == 0) {  // no cuts: the triangle and the ball alone decide
+  if (random.below(3) == 0) {  // zlo and zhi cut nothing off the fattened triangle
     s[0][3] = number(-4 * far);
     s[2][3] = number(4 * far);
   }

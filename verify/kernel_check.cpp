@@ -1,5 +1,5 @@
-// An answer about a box is compared with the part of the line in the box. An answer about an exact
-// offset is compared with points of the line that were found to lie in the solid.
+// An answer about a box is compared with the exact part of the line in the box. An answer about a
+// fattened triangle is compared with points of the line that lie in the solid.
 #include "verify/kernel_check.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 using rational::Draws;
 using rational::Q;
 
-// Each index has its own engine, so that a case does not depend on earlier cases.
+// Each index has its own random numbers, so that a case does not depend on earlier cases.
 Draws draws_of(std::uint64_t seed, std::uint64_t index) {
   return Draws(seed * 0x9e3779b97f4a7c15u + index);
 }
@@ -24,7 +24,7 @@ void count(bool held, KernelTally& tally) {
   tally.lost += !held;
 }
 
-// An answer with a bound that is not finite counts as wrong.
+// An answer with an infinite bound or NaN counts as wrong.
 bool usable(const SolidAnswer& a) {
   return !a.hit || (std::isfinite(a.entry) && std::isfinite(a.exit));
 }

@@ -1,6 +1,6 @@
-// Decides with rationals whether a kernel's answer about a solid and a line along z is right. The
-// answer, from a device or from this CPU, has to contain the part of the line that is in the exact
-// solid, and must not be much wider.
+// Decides with rationals whether a kernel's answer (SolidAnswer) about a solid and a line along z
+// is right. The kernel runs on a device or on this CPU. Its answer has to contain the part of the
+// line in the exact solid, and must not be much wider.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct KernelTally {
 };
 
 /// At most the fraction kLooseShare of the ordinary answers may have an end more than kLoose (px)
-/// beyond the exact end. The test of the box finds a tenth of this fraction
-/// (ObbKernel.IsNotAbsurdlyLooseOnOrdinaryBoxes).
+/// beyond the exact end. The test ObbKernel.IsNotAbsurdlyLooseOnOrdinaryBoxes allows a tenth of
+/// this fraction.
 constexpr double kLoose = 0.1, kLooseShare = 1e-2;
 
 /// Checks an answer about the solid of offsets/obb.glsl: three slabs. ordinary: the box is of
@@ -36,8 +36,8 @@ struct KernelTriangle {
   double radius;  // px
   bool ordinary;
 };
-/// Each of these functions returns the case that a seed and an index define, the same on every
-/// machine. The floats of adversarial solids are drawn directly, not computed from a triangle.
+/// Each function returns the case of a seed and an index at the pixel centre (cx, cy). The floats
+/// of adversarial solids are drawn directly, not computed from a triangle.
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);

@@ -20,8 +20,8 @@ using Corners = std::array<Vec3, 3>;
 //
 // Distance. distance_bounds() gives two bounds of the exact distance D. The length L of the
 // difference of two computed points lies between them. The bounds are accepted if they differ by at
-// most 2^-33 of the lower one, so L is off by at most 2^-32 D. The factor 2 covers the roundings of
-// that comparison.
+// most 2^-33 of the lower bound. So L is off by at most 2^-32 D. Between 2^-33 and 2^-32, there is
+// room for the roundings of that comparison.
 //
 // Normal. Let w be the exact difference of nearest points, so |w| = D. Let x be the exact
 // difference of the points that have the computed weights (divided by the sum of the weights).
@@ -83,14 +83,14 @@ NearContact contact_at(const Corners& a, const Corners& b, const std::array<Vec3
 
 /// An edge of one triangle that passes through the face of the other one.
 struct Passing {
-  double least = -HUGE_VAL;  // the least weight of the point in the face
+  double least = -HUGE_VAL;  // least of the three weights of the point in the face
   std::array<Vec3, 2> weights = {Vec3::Zero(), Vec3::Zero()};  // of the point on a, then on b
   int side = 0;                                                // 0: the edge is one of a; 1: of b
   double gap = HUGE_VAL;                                       // L1 distance of the two points
 };
 
-/// Sets `best` to the edge of x that crosses y's plane deepest inside y, if it is deeper than
-/// `best`. side: 0 if x is a, 1 if x is b.
+/// Sets `best` to the edge of x that passes deepest inside y, if it is deeper than `best`. Depth is
+/// the least weight (negative outside y). side: 0 if x is a, 1 if x is b.
 void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) {
   const Vec3 e = y[1] - y[0], f = y[2] - y[0], n = e.cross(f);
   const double nn = n.squaredNorm();
@@ -115,7 +115,7 @@ void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) 
 }
 
 /// Returns the contact of triangles that cross: a point of an edge in the other triangle. Empty if
-/// this point may be farther than 64 u R from the other triangle.
+/// this point is not certainly within 64 u R of the other triangle.
 std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
   const Corners s = filters::relative_to(a[0], a), t = filters::relative_to(a[0], b);
   Passing best;

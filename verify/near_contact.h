@@ -1,5 +1,5 @@
-// Contacts of two triangles within a distance: how far apart, where, and in which direction.
-// Triangles are as in verify/exact.h.
+// Finds the contact of two triangles within a distance: the exact or nearly exact distance, two
+// nearest points, and the direction between them. Triangles are as in verify/exact.h.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace farcull {
 
-/// Two nearest points: p of a and q of b.
+/// A contact of triangles a and b, given by two nearest points: p of a and q of b.
 struct NearContact {
   double distance = 0;         // world units; 0 if the triangles meet
   std::array<Vec3, 2> points;  // p and q; equal if the triangles meet
@@ -32,7 +32,7 @@ constexpr double kContactTolerance = 0x1p-33;
 
 /// Returns the contact of triangles whose distance is at most `within` (finite, >= 0). Empty if
 /// they are farther apart, which is decided exactly. planes: filter_planes(a, b, within). Doubles
-/// give the contact if error bounds allow that; otherwise exact_contact() does. Errors, where R is
+/// give the contact if their error bounds suffice, otherwise exact_contact(). Errors, where R is
 /// the largest difference of two coordinates on one axis:
 /// - distance: at most 2^-32 of itself (subnormal: half of the last bit). It is 0 only if the
 ///   triangles meet or the exact distance is rounded to 0.

@@ -1,13 +1,13 @@
-// Finds the nearest of many pairs of triangles. Bounds in doubles leave few pairs that can be
+// Finds the nearest of many pairs of triangles. Bounds in doubles leave few pairs that can be the
 // nearest. The squared distances of these pairs are compared exactly.
 //
-// Most of these pairs have triangles around one corner or edge, and the same two closest points.
-// SamePoints recognises such a pair. Let F and G be the features of closest points of a solved
-// pair, and w the difference of these points. Another pair has points as near if its triangles have
-// the corners of F and of G. It has no nearer points if w . (x - p) < 0 for the other corners x of
-// the triangle with F, and w . (y - q) > 0 for the other corners y of the triangle with G
-// (closest_points.cpp, "Proof of a guess"). Here p may be any corner of F, and q any corner of G,
-// since w is perpendicular to both features.
+// Often many of these pairs have the same two closest points, since their triangles share a corner
+// or an edge. SamePoints recognises such a pair. Let F and G be the features of closest points of a
+// solved pair, and w the difference of these points. Another pair has points as near if its first
+// triangle has the corners of F and its second triangle those of G. It has no nearer points if
+// w . (x - p) < 0 for the other corners x of the triangle with F, and w . (y - q) > 0 for the other
+// corners y of the triangle with G (closest_points.cpp, "Proof of a guess"). Here p may be any
+// corner of F, and q any corner of G, since w is perpendicular to both features.
 //
 // Doubles decide the signs if the products exceed the rounding errors: kTie and the constants after
 // it (verify/rounding.h) bound these errors, and docs/proofs.md has the proofs (`distance.tie`).
@@ -32,7 +32,7 @@ namespace {
 using filters::DistanceBounds;
 using Triangle = std::array<Vec3, 3>;
 
-/// The closest points of a pair, to recognise pairs with the same closest points.
+/// Stores the closest points of a pair, and recognises pairs with the same closest points.
 class SamePoints {
  public:
   SamePoints(const Triangle& a, const Triangle& b, const Closest& closest)
@@ -42,7 +42,7 @@ class SamePoints {
              Vec3::Constant(kTieSubnormal)),
         sides_{side_of(a, closest.features[0]), side_of(b, closest.features[1])} {}
 
-  /// True only if the closest points are closest points of a and b as well.
+  /// True only if the closest points of the given pair are closest points of a and b as well.
   bool are_those_of(const Triangle& a, const Triangle& b) const {
     return is_behind(sides_[0], a, 1) && is_behind(sides_[1], b, -1);
   }
@@ -84,13 +84,13 @@ class SamePoints {
 };
 
 /// Recognises pairs that are no nearer than a given pair, by planes that separate the triangles of
-/// the given pair. reach() and start() of each triangle are computed once.
+/// the given pair. Computes PlanesBetween::reach() and start() once for each triangle.
 class NoNearer {
  public:
   NoNearer(const Scene& scene, const TrianglePair& pair)
       : scene_(scene), planes_(scene.corners(pair.a), scene.corners(pair.b)) {}
 
-  /// True only if the pair is farther apart than the given pair (or as far, if `as_far`).
+  /// True only if `pair` is farther apart than the given pair; with as_far, at least as far.
   bool shows(const TrianglePair& pair, bool as_far) {
     const auto [reach, new_reach] = reach_.try_emplace(pair.a);
     if (new_reach) reach->second = planes_.reach(scene_.corners(pair.a));

@@ -1,5 +1,5 @@
-// Looks for a plane that divides the objects. Then cuts triangles with contacts into convex pieces,
-// and casts a ray along an axis, to both sides of the triangle, through a point of each piece.
+// Looks for a plane that divides the objects. If none is found, cuts triangles with contacts into
+// convex pieces, and counts crossings of rays that leave each piece along an axis.
 #include "verify/overlap.h"
 
 #include <Eigen/Geometry>
@@ -24,9 +24,9 @@ using rational::Q;
 using rational::Q3;
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::size_t kMostPlanes = 64;    // at most this many planes are tried as dividing planes
+constexpr std::size_t kMostPlanes = 64;    // planes of at most this many triangles are tried
 constexpr std::size_t kMostPieces = 2048;  // at most this many pieces of a triangle
-// At most this many tests of a piece with a triangle are made. They take about two seconds.
+// At most this many tests of a piece with a triangle are made, which takes about two seconds.
 constexpr std::size_t kMostTests = std::size_t{1} << 31;
 
 /// The points p with normal . p = offset.
@@ -103,10 +103,10 @@ void cut(std::vector<Polygon>& pieces, const Plane& plane) {
   }
 }
 
-/// Cuts pieces of t along a triangle that meets t: along its plane, or along the lines of its edges
-/// if it lies in the plane of t.
+/// Cuts pieces of t by the triangle `other`, which meets t: along the plane of `other`, or along
+/// the lines of its edges if `other` lies in the plane of t.
 void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& other) {
-  if (shape(other) != Shape::triangle) return;  // a segment or point does not divide
+  if (shape(other) != Shape::triangle) return;  // a segment or point does not divide a triangle
   const bool flat =
       std::ranges::all_of(other, [&](const Vec3& p) { return of_t.side(exact(p)) == 0; });
   if (!flat) return cut(pieces, plane_of(other));
@@ -116,8 +116,8 @@ void cut_by(std::vector<Polygon>& pieces, const Plane& of_t, const Corners& othe
   }
 }
 
-/// Returns a point inside the polygon. The corners get random weights, so the point hardly ever
-/// lies on a given line.
+/// Returns a point inside the polygon. The weights of the corners are random, so the point hardly
+/// ever lies on a given line.
 Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   Q3 sum = {0, 0, 0};
   Q total = 0;
@@ -130,8 +130,8 @@ Q3 point_inside(const Polygon& polygon, RandomNumbers& random) {
   return sum;
 }
 
-/// The places just below (0) and just above (1) a point of a plane, along an axis: are they inside
-/// an object? overlap.h has the two rules that decide this.
+/// Whether the places just below ([0]) and just above ([1]) a point of a plane, along an axis, are
+/// inside an object. overlap.h explains the two rules that decide this.
 struct Sides {
   std::array<bool, 2> perhaps{};  // at least one rule says yes
   std::array<bool, 2> inside{};   // both rules say yes
@@ -142,7 +142,7 @@ struct Sides {
 std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Plane& plane,
                               const Q3& p, int axis) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  // get_d() truncates, so the exact coordinate lies between the neighbours of its double.
+  // get_d() truncates, so the exact coordinate lies between the doubles next to pu (or pv).
   const double pu = p[u].get_d(), pv = p[v].get_d();
   const auto below = [](double x) { return std::nextafter(x, -HUGE_VAL); };
   const auto above = [](double x) { return std::nextafter(x, HUGE_VAL); };
@@ -168,12 +168,12 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
       return std::nullopt;
     }
     const Plane of_t = plane_of(t);
-    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // sign: is p above t?
+    const int height = of_t.side(p) * sgn(of_t.normal[axis]);  // > 0: p is above t
     if (height == 0) {
       for (const Q3& c : corner) {
         if (plane.side(c) != 0) return std::nullopt;
       }
-      continue;  // a ray that leaves the plane does not meet it again
+      continue;  // t is in the plane, which the rays leave
     }
     const std::size_t to = height < 0 ? 1 : 0;
     ++crossings[to];
@@ -192,7 +192,7 @@ std::optional<Sides> sides_of(const Scene& scene, std::uint32_t object, const Pl
 /// that may meet an edge counts as meeting a triangle.
 bool sees_out(const Scene& scene, std::uint32_t object, const Vec3& point) {
   const Q3 p = exact(point);
-  unsigned free = 0x3f;  // two bits for each axis: forward, backward
+  unsigned free = 0x3f;  // bits 2 k and 2 k + 1: rays forward and backward along axis k are free
   for_triangles(scene, object, [&](const Corners& t) {
     const Box box = box_of(t);
     for (int axis = 0; axis < 3; ++axis) {
@@ -235,7 +235,7 @@ class PieceTest {
       cut_by(pieces, plane, scene_.corners(other));
       if (pieces.size() > kMostPieces) return Overlap::unknown;
     }
-    // Other triangles of its own object cut t, too, since its inside may change there.
+    // Triangles of t's own object also cut t: beyond a cut, the inside may lie on the other side.
     const Box box = box_of(corners);
     for_triangles(scene_, own, [&](const Corners& other) {
       if (pieces.size() > kMostPieces || !overlap(box, box_of(other))) return;
@@ -271,7 +271,7 @@ class PieceTest {
       }
       const Sides &own = of_a ? *a : *b, &other = of_a ? *b : *a;
       if (!own.perhaps[0] && !own.perhaps[1] && other.perhaps[0] && other.perhaps[1])
-        out = Overlap::unknown;  // what is connected with the piece may be inside
+        out = Overlap::unknown;  // the surface around the piece may be inside the other object
       return out;
     }
     return Overlap::unknown;
@@ -340,7 +340,7 @@ Overlap overlap_of_touching(const Scene& scene, ObjectPair objects,
       if (answer != Overlap::no) return answer;
     }
   }
-  // A point on the other object's surface decides nothing: the pieces decide there.
+  // A point on the other object's surface decides nothing; the pieces decide there.
   Overlap out = Overlap::no;
   for (const bool second : {false, true}) {
     for (const Vec3& point : second ? parts_b : parts_a) {

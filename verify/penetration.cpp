@@ -1,6 +1,6 @@
 // The expanding polytope algorithm on all corners finds the shortest translation that separates the
-// convex hulls. It gives the first upper bound. Then a search improves both bounds. Both steps
-// compute in plain doubles, but the bounds are proved.
+// convex hulls. This translation gives the first upper bound. Then a search improves both bounds.
+// Both steps compute in plain doubles, but the bounds are proved.
 #include "verify/penetration.h"
 
 #include <Eigen/Geometry>
@@ -39,15 +39,15 @@ class Polytope {
     std::array<std::uint32_t, 3> corners;
     Vec3 normal;      // of length 1, outward
     double distance;  // from the origin; negative if the origin is above the plane
-    bool final;       // true if no point of the differences is above the face
+    bool final;       // true if the face needs no further expansion
   };
 
-  /// flat: a point up to this far above a plane, relative to the size, counts as in the plane.
-  /// Corners are rounded, so the plane of a small face is uncertain far from the face.
+  /// flat: a point counts as in a plane if its height, divided by the polytope's size, is at most
+  /// `flat`. Corners are rounded, so the plane of a small face is uncertain far from the face.
   Polytope(const Points& a, const Points& b, double flat) : a_(&a), b_(&b), flat_(flat) {}
 
-  /// Adds points above the face that is nearest to the origin. Ends when this face is final (whole:
-  /// when all faces are), or when `steps` points were added.
+  /// Adds points above the face that is nearest to the origin. Ends when this face is final (with
+  /// `whole`: when all faces are final), or when `steps` points were added.
   void expand(int steps, bool whole) {
     if (!begin()) faces_.clear();
     while (steps > 0 && !faces_.empty()) {
@@ -67,7 +67,7 @@ class Polytope {
       }
       add(next);
       --steps;
-      // A convex surface has fewer faces than twice its corners.
+      // A convex surface has fewer faces than twice its corners. So rounding broke this surface.
       if (faces_.size() > 2 * corners_.size()) faces_.clear();
     }
   }
@@ -80,8 +80,8 @@ class Polytope {
   const Points& corners() const { return corners_; }
 
  private:
-  // Returns the point of the difference b - a that is farthest in the direction. After a
-  // translation of a by the overlap along the direction, a begins where b ends.
+  // Returns the point of the Minkowski difference b - a that is farthest in the direction.
+  // `overlap` is the distance by which a must move in this direction so that a begins where b ends.
   Vec3 support(const Vec3& direction) {
     const Vec3 out = farthest(*b_, direction) - farthest(*a_, -direction);
     const double overlap = direction.dot(out);
@@ -125,8 +125,8 @@ class Polytope {
     return true;
   }
 
-  // Replaces the faces that see the point by faces from their rim to the point. Does nothing if a
-  // new face would be degenerate.
+  // Replaces the faces that see the point by faces from the rim of these faces to the point. If a
+  // new face would be degenerate, restores the old faces.
   void add(const Vec3& point) {
     std::vector<std::array<std::uint32_t, 2>> edges;  // directed edges of faces that see the point
     std::vector<Face> kept;
@@ -166,22 +166,22 @@ class Polytope {
   bool convex_ = true;
 };
 
-/// A set of translations after which the objects certainly overlap.
+/// A set of translations of a after which the objects certainly overlap.
 struct Cover {
   struct Side {
     Vec3 normal;      // of length 1
     double distance;  // a translation t is in the cover if normal . t < distance for all sides
-    double error;     // largest error of normal . t - distance, relative to the magnitudes
-    Vec3 support;     // |normal . axis| for each axis of boxes
+    double error;     // bound of the error of normal . t - distance, relative to the magnitudes
+    Vec3 support;     // |normal . axis| for each axis of the search's boxes
   };
   std::vector<Side> sides;
-  double largest = 0;  // the largest |coordinate| of the corners
+  double largest = 0;  // the largest |coordinate| of the polytope's corners
 };
 
 // Roundings. A component of a normal e x f has 4 roundings, relative to products of components of e
-// and f. Dividing the normal by its length divides this error as well; `thin` is the quotient.
-// Products with a translation and with a corner, the corner's own rounding, sums and axes have 24
-// more, relative to 1. The factor 40 covers all of them.
+// and f. These products are divided by the normal's length; `thin` bounds the quotient. Products
+// with a translation and with a corner, the corner's own rounding, sums and axes have 24 more,
+// relative to 1. The factor 40 covers all of them.
 Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   Cover out;
   const Points& at = polytope.corners();
@@ -196,7 +196,7 @@ Cover cover_of(const Polytope& polytope, const std::array<Vec3, 3>& axes) {
   return out;
 }
 
-/// Returns how far a ray from the origin stays inside the covers, in plain doubles.
+/// Returns how far a ray from the origin stays inside the union of the covers, in plain doubles.
 double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   std::vector<std::array<double, 2>> parts;  // the part of the ray in each cover
   for (const Cover& cover : covers) {
@@ -218,8 +218,8 @@ double held_along(const std::vector<Cover>& covers, const Vec3& direction) {
   return out;
 }
 
-/// Returns three directions, perpendicular except for rounding. The first is the normal of most of
-/// the area. The second is the normal of most of the area that is perpendicular to the first.
+/// Returns three directions, perpendicular except for rounding. The first is the normal with the
+/// most area. The second is chosen likewise among normals perpendicular to the first.
 std::array<Vec3, 3> axes_of(const ClosedObject& a, const ClosedObject& b) {
   std::vector<std::pair<double, Vec3>> normals;
   for (const ClosedObject* solid : {&a, &b}) {
@@ -276,8 +276,8 @@ class Search {
     return true;
   }
 
-  /// Divides the ball of translations shorter than the upper bound into parts, until all parts
-  /// nearer than the lower bound are settled.
+  /// Divides the ball of translations shorter than the upper bound into parts, the nearest part
+  /// first. The lower bound rises to the distance of the nearest part that is not settled.
   void search() {
     constexpr double kWork = 2e6;  // about this many sides of covers are examined
     constexpr double kClose = 0.98;
@@ -286,7 +286,7 @@ class Search {
     const double least = 1e-7 * out_.hi;
     while (!parts.empty()) {
       const Part part = parts.top();
-      // The factor covers rounding errors of the axes, which are not exactly perpendicular.
+      // Rounding makes the axes not exactly perpendicular. The factor covers this.
       out_.lo = std::max(out_.lo, std::min(part.distance * (1 - 1e-12), out_.hi));
       if (out_.lo >= kClose * out_.hi || work_ > kWork) return;
       parts.pop();
@@ -325,8 +325,8 @@ class Search {
     });
   }
 
-  /// Returns the axis along which the part extends beyond the cover that contains most of the part;
-  /// -1 if a cover contains all of it.
+  /// Returns -1 if a cover contains the whole part. Otherwise chooses the cover beyond which the
+  /// part extends least, and returns the axis to divide so that this excess shrinks most.
   int axis_to_divide(const Part& part) {
     const Vec3 middle = point_at(part.middle);
     const double reach = middle.cwiseAbs().maxCoeff() + part.half.sum();
@@ -358,7 +358,7 @@ class Search {
   std::array<Vec3, 3> axes_;
   Penetration& out_;
   int failures_;     // this many failed translations are still allowed
-  double room_ = 0;  // bound of rounding errors and of the shrinking of cores
+  double room_ = 0;  // added to lengths of translations, for roundings and shrunk cores
   double work_ = 0;
 };
 
@@ -425,8 +425,8 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
   const std::size_t most = std::min(found.size(), kMost);
   for (std::size_t k = 0; k < most; ++k) {
     Deep& d = found[k];
-    // A step away from the nearest point stays inside if it is shorter than the distance to that
-    // point.
+    // A step away from the nearest surface point cannot leave the object if the step is shorter
+    // than the distance to the surface.
     for (int step = 0; step < 20; ++step) {
       const Deep next = deep(d.point + (step % 2 == 0 ? 0.8 : 0.2) * (d.point - d.nearest));
       if (next.distance() > d.distance()) d = next;
@@ -442,8 +442,8 @@ Points deep_points(const ClosedObject& a, const ClosedObject& b, std::span<const
 }  // namespace
 
 // True if products of four lengths are normal numbers, for lengths down to 2^-50 of the object's
-// extent. Squares of cross products are such products; their roots make normals of length 1. If
-// false, no lower bound of the depth is computed.
+// extent. Normals of length 1 come from roots of such products (squared cross products). If false,
+// no lower bound of the depth is computed.
 bool has_normal_products(const ClosedObject& solid) {
   const Vec3 extent = solid.box().hi - solid.box().lo;
   return extent.maxCoeff() > 0x1p-200 && solid.largest() < 0x1p200;
@@ -451,8 +451,8 @@ bool has_normal_products(const ClosedObject& solid) {
 
 Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<const Vec3> starts,
                         unsigned threads, const std::optional<DepthLimit>& limit) {
-  // Limits of the work for two objects. Larger objects get fewer cores, so that the search takes
-  // about as long as finding their pairs of triangles.
+  // These are limits of the work. Larger objects get fewer cores, so that the search takes about as
+  // long as finding the pairs of triangles that meet.
   const bool small = a.triangles().size() + b.triangles().size() < 1000;
   const std::size_t most_cores = small ? 48 : 10, most_pairs = small ? 256 : 64;
   const int steps = small ? 200 : 60;
@@ -512,7 +512,7 @@ Penetration penetration(const ClosedObject& a, const ClosedObject& b, std::span<
   }
   if (covers.empty() || out.lo * 1.001 >= out.hi) return out;
   if (limit && out.lo > limit->most) return out;
-  // With a limit only translations shorter than `most` matter, so only these are searched.
+  // With a limit, only translations shorter than `most` matter, so only these are searched.
   Penetration found = out;
   if (limit) found.hi = limit->most;
   Search search(a, b, std::move(covers), axes, found);

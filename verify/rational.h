@@ -1,6 +1,6 @@
-// Exact arithmetic for checks of rounded geometry. A double or float converts to a rational
-// exactly, so a claimed bound is decided, not estimated. Also has random numbers that are the same
-// on every machine.
+// Rational arithmetic for checks of rounded geometry. Doubles and floats are converted to rationals
+// without rounding, so a claimed bound is decided, not estimated. Also contains random numbers,
+// which depend only on a seed and on the math library.
 #pragma once
 
 #include <gmpxx.h>

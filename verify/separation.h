@@ -1,5 +1,5 @@
-// Tests in doubles whether boxes or triangles are farther apart than a limit, for the accounting of
-// distances. Each test is true only if bounds of all roundings prove this.
+// Tests in doubles whether boxes or triangles are farther apart than a limit. Each test is true
+// only if bounds of all roundings prove this.
 //
 // u = 2^-53 is the unit roundoff. Sums and differences of doubles have a relative error of at most
 // u, even if the result is subnormal. Products and quotients have a relative error of at most u,
@@ -41,9 +41,9 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 /// than `limit` (>= 0, finite). Proof: two parallel planes are farther apart than the limit, all of
 /// a is before the first plane, and all of b is beyond the second plane.
 ///
-/// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
-/// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any direction
-/// may be tried, since the gap is bounded with all roundings.
+/// The directions come from Gilbert's descent towards the closest points (An Iterative Procedure
+/// for Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). Any
+/// direction may be tried, since the gap along the direction is bounded with all roundings.
 template <class Points, class Others>
 bool farther_by_planes(const Points& a, const Others& b, double limit) {
   constexpr int kSteps = 24;
@@ -70,9 +70,9 @@ bool farther_by_planes(const Points& a, const Others& b, double limit) {
       if (const double of_t = n.dot(t); of_t < t_least) t_least = of_t, t_at = t;
     }
     // In n . y, each of three terms is rounded twice: in y and in the product. Then come two sums.
-    // So s_most and t_least are off by at most 4.01 u of `magnitude`, plus the loss to subnormal
-    // products. Their difference is rounded once more, by at most 2 u of `magnitude`. The length is
-    // off by 4 u of itself, the quotient by 1 u.
+    // So s_most and t_least are off by at most 4.01 u of `magnitude`. The loss to subnormal
+    // products is far below 2^-1000. The difference is rounded once more, by at most 2 u of
+    // `magnitude`. The length is off by 4 u of itself, the quotient by 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
     if (!std::isfinite(magnitude)) return false;
     if (gap > 0x1p-900 && gap / n.norm() * (1 - 16 * kU) > limit) return true;

@@ -1,5 +1,5 @@
-// The exact interval in which a line along z lies in a solid. The floats of a Solid define the
-// solid exactly. A kernel's answer must contain this interval.
+// Checks a kernel's answer about a solid: the answer must contain the interval in which a line
+// along z lies in the solid. The floats of a Solid define the solid exactly.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace farcull::box_line {
 
-// A line along z and an oriented box, as the floats of a Solid define it (offsets/obb.glsl): three
-// slabs |a . (p - m)| <= h, cut by zlo <= z <= zhi.
+// The solid here is an oriented box, as the floats of a Solid define it (offsets/obb.glsl): three
+// slabs |a . (p - m)| <= h, cut by zlo <= z <= zhi. The line is along z through (cx, cy).
 
 using rational::Draws;
 using rational::Q;
@@ -46,7 +46,7 @@ inline std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid
 
 /// Returns the interval in doubles, a little too large; none if the line certainly misses the
 /// solid. Products of floats are exact in double. Each difference and sum is off by 2^-53 of the
-/// sizes of its terms. 2^-49 is more than all of these errors together.
+/// magnitudes of its terms. 2^-49 is more than all of these errors together.
 inline std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& s) {
   Interval<double> z{s[0][3], s[4][0]};
   for (int i = 1; i <= 3; ++i) {
@@ -72,8 +72,8 @@ inline std::optional<Interval<double>> outer_interval(float cx, float cy, const 
 inline float number(double x) { return static_cast<float>(x); }
 
 /// Returns a solid whose floats are drawn directly, not computed from a triangle. Its slabs may be
-/// nearly parallel to the line, thin or thick, with zeros and denormals in their normals. Their
-/// middle may be far away. The line passes through the solid or close to its border.
+/// nearly parallel to the line, thin or thick, with zeros and subnormals in their normals. The
+/// middle of the slabs may be far away. The line passes through the solid or close to its border.
 inline Solid adversarial_at(Draws& random, float cx, float cy) {
   Solid s{};
   const double far = random.below(3) == 0 ? 1e9 : 1000;
@@ -90,7 +90,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
     if (change == 3) s[i][2] = number(random.scaled(-149, -18));
     if (change == 4) s[i][random.below(3)] = number(random.scaled(-149, -100));
     if (change == 5) s[i][random.below(2)] = 0;
-    // Puts the border of the slab close to the line, at a random depth.
+    // Chooses the half thickness h; the slab's border is often close to the line.
     const double at =
         double(s[i][0]) * (double(cx) - s[0][0]) + double(s[i][1]) * (double(cy) - s[0][1]);
     double h = std::abs(random.scaled(-10, 10));
@@ -102,7 +102,7 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
   double mid = s[0][2] + random.scaled(-6, 8);
   s[0][3] = number(mid - thick);
   s[4][0] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(4) == 0) {  // no cuts: only the slabs decide
+  if (random.below(4) == 0) {  // zlo and zhi cut nothing off the slabs
     s[0][3] = number(-2 * far);
     s[4][0] = number(2 * far);
   }
@@ -113,12 +113,12 @@ inline Solid adversarial_at(Draws& random, float cx, float cy) {
 
 namespace farcull::minkowski_line {
 
-// A line along z and a triangle fattened by a ball, as the floats of a Solid define it
+// The solid here is a triangle fattened by a ball, as the floats of a Solid define it
 // (offsets/minkowski.glsl). Let m be the solid's centre, and v0, v1, v2 its corners relative to m.
-// Let the line be at c in the image, and d = c - m. The ball about a point p of the triangle cuts
-// the line in the chord from m.z + p.z - root to m.z + p.z + root, root = sqrt(r^2 - |d - p.xy|^2).
-// The solid's interval is the hull of all chords, so a kernel's answer has to contain the chord of
-// every p. Long doubles decide this for most points, and rationals for the other points.
+// The line is along z through c in the image; d = c - m. The ball about a point p of the triangle
+// cuts the line in the chord m.z + p.z +- root, with root = sqrt(r^2 - |d - p.xy|^2). The solid's
+// interval is the hull of all chords. So a kernel's answer has to contain every chord. Long doubles
+// decide this for most points, and rationals for the other points.
 
 using rational::Q;
 using Real = long double;
@@ -139,7 +139,7 @@ inline Weights weights(Real w1, Real w2) {
   return {first, grid(std::clamp<Real>(w2, 0, 1 - first))};
 }
 
-/// Returns the point at fraction t of an edge.
+/// Returns the weights of the point at fraction t along an edge.
 inline Weights on_edge(int edge, Real t) {
   t = weights(t, 0).w1;
   return edge == 0 ? Weights{t, 0} : edge == 1 ? Weights{1 - t, t} : Weights{0, 1 - t};
@@ -167,8 +167,8 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// Returns the chord that the sphere around a point cuts from the line. About a dozen operations
-  /// err by 2^-64 of the largest coordinate each. So 2^-56 of flat_ (image) and deep_ are bounds.
+  /// Returns the chord in the ball around a point. A dozen operations each err by 2^-64 of the
+  /// largest coordinate. So x and y are off by at most 2^-56 flat_, and z by 2^-56 deep_.
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -275,7 +275,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
   }
   const Q x = Q(cx) - p[0], y = Q(cy) - p[1], square = r * r - x * x - y * y;
   if (square < 0) return false;
-  // Depths that the solid may have: the chord's middle and the two cuts.
+  // Depths on the line that the solid may contain: the chord's middle and the two cuts.
   const Q* const depths[] = {&p[2], &zlo, &zhi};
   for (const Q* z : depths) {
     const Q off = *z - p[2];
@@ -283,8 +283,8 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
     if (!answer.hit || *z < Q(answer.entry) || *z > Q(answer.exit)) return true;
   }
   if (!answer.hit) return false;
-  // If an end of the answer lies strictly inside the chord and the cuts, the chord extends beyond
-  // the answer.
+  // If an end of the answer lies strictly inside the chord and between the cuts, the chord extends
+  // beyond the answer.
   const auto strictly_inside = [&](const Q& z) {
     const Q off = z - p[2];
     return off * off < square;

@@ -1,4 +1,4 @@
-// Squared distances as fractions of integers, compared by cross-multiplying, and rounded once.
+// Stores squared distances as fractions of integers, compares them exactly, and rounds once.
 //
 // Rounding. A quotient or a root is first cut off to an integer of at least 55 bits, times a power
 // of two. Then one more bit is appended, which is 1 iff something was cut off. A double keeps 53
@@ -51,8 +51,8 @@ double rounded(const mpz_class& m, long exponent) {
   const long last = std::max(bits_of(magnitude) + exponent - kDigits, kLeastExponent);
   const long drop = last - exponent;
   if (drop > 0) {
-    // Adds half of the last kept bit, and cuts off the sum. If two numbers are equally near, the
-    // even one is kept.
+    // Adds half of the last kept bit, and cuts off the sum. If two doubles are equally near, keeps
+    // the even one.
     const auto k = static_cast<mp_bitcnt_t>(drop);
     const bool middle = mpz_scan1(magnitude.get_mpz_t(), 0) == k - 1;
     mpz_class sum = magnitude + shifted(1, drop - 1);

@@ -1,6 +1,6 @@
-// Exact arithmetic in integers: doubles as integers of one scale, the integers behind a
-// SquaredDistance, and rounding of fractions to doubles. Only sources of verify/closest.h and
-// verify/contact.h and their tests use this file.
+// Converts doubles to integers of one scale, defines the integers behind a SquaredDistance, and
+// rounds fractions of integers to doubles. Only sources of verify/closest.h, verify/contact.h and
+// verify/near_contact.h and their tests use this file.
 #pragma once
 
 #include <gmpxx.h>
@@ -38,7 +38,7 @@ inline Vec3 rounded_point(const std::array<mpz_class, 3>& x, const mpz_class& w,
           rounded_quotient(x[2], w, exponent)};
 }
 
-/// Returns the number of bits of the magnitude; 1 for 0.
+/// Returns the number of bits of the magnitude of x; 1 for 0.
 inline long bits_of(const mpz_class& x) {
   return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
 }
@@ -53,16 +53,16 @@ inline int lowest_bit(double x) {
   return exponent - 53 + __builtin_ctzll(static_cast<std::uint64_t>(digits));
 }
 
-/// Returns x times 2^-exponent. Precondition: this is an integer.
+/// Returns x times 2^-exponent. Precondition: the result is an integer.
 inline mpz_class integer_of(double x, int exponent) {
   const double whole = std::ldexp(x, -exponent);
   if (std::isfinite(whole)) return mpz_class(whole);
   int of_x = 0;
   mpz_class out(std::ldexp(std::frexp(x, &of_x), 53));
-  return out << static_cast<mp_bitcnt_t>(of_x - 53 - exponent);  // > 0, since `whole` overflows
+  return out << static_cast<mp_bitcnt_t>(of_x - 53 - exponent);  // shift > 0, as `whole` overflows
 }
 
-/// The corners of two triangles: integers times 2^exponent. The exponent is the largest possible.
+/// The corners of two triangles as integers times 2^exponent, with the largest possible exponent.
 struct Scaled {
   using Corners = std::array<std::array<mpz_class, 3>, 3>;
   Corners a, b;

@@ -1,23 +1,23 @@
-// Numbers with about 106 bits, each with a bound of its error. A test tells whether the bound is
+// Numbers with about 106 bits, each with a bound of its error. nearest() tells whether the bound is
 // small enough to round the number correctly (Dekker, A Floating-Point Technique for Extending the
 // Available Precision, 1971; Ziv, Fast Evaluation of Elementary Mathematical Functions with
 // Correctly Rounded Last Bit, 1991). Only verify/contact_points.cpp uses this file.
 //
 // u = 2^-53. Products, quotients and sums are rounded to nearest, so each is off by at most u times
-// the result. exact_sum() and exact_product() also give the part that rounding cuts off. If no such
-// part is dropped, as for coordinates of few digits, the error is 0.
+// the result. exact_sum() and exact_product() also give the part that rounding cuts off. If all
+// these parts are kept, as for coordinates of few digits, the error is 0.
 //
-// A bound is a sum of terms >= 0 that has at most 12 roundings. So the computed bound is at least
-// (1 - u)^12 times the exact bound. Bounds::factor makes up for this, and for a factor
+// A bound is a sum of terms >= 0 and has at most 12 roundings. So the computed bound is at least
+// (1 - u)^12 times the exact bound. Bounds::factor makes up for this. It also makes up for a factor
 // 1 + u, since |hi + lo| <= (1 + u) |hi|.
 //
-// Underflow. Precondition: each number at the start is the sum of two doubles, each 0 or of a
-// magnitude in [2^-100, 2^100]. Later values are products of at most four of these numbers, or sums
-// of such products.
-// - Before a division nothing underflows: differences are multiples of 2^-152 and products of four
-// are multiples of 2^-608, also when rounded. An error above 0 is at least u times such a product.
+// Underflow. Precondition: each number at the start is a sum of at most two doubles, and each
+// double is 0 or of a magnitude in [2^-100, 2^100]. Later values are sums of products of at most
+// four of these numbers.
+// - Before a division nothing underflows: sums are multiples of 2^-152, products of four are
+//   multiples of 2^-608, and an error above 0 is at least u times such a product.
 // - A quotient of a product of four and one of three is 0 or above 2^-916. Its low part and its
-// bound may underflow, by 2^-1070 in all. The term kUnderflow covers this.
+//   bound may underflow, by 2^-1070 in all. kUnderflow covers this.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@
 
 namespace farcull::wide {
 
-/// Each bound is multiplied by this factor last. The factor is in a type, so that tests can show
-/// that smaller bounds give wrong answers.
+/// Each bound is multiplied by this factor last. The factor is a member of a type, so that tests
+/// can pass a type with a smaller factor, and show that its bounds give wrong answers.
 struct Bounds {
   static constexpr double factor = 1 + 0x1p-48;
 };
@@ -93,8 +93,8 @@ Number<B> operator*(const Number<B>& a, const Number<B>& b) {
               std::abs(a.lo * b.lo) + kUnit * rounding};
 }
 
-/// Let q be the first quotient and r = a - q b. Then a / b = q + r / b. The second quotient r.hi /
-/// b.hi is off from r / b by (r - r.hi - d r.hi / b.hi) / b, where d = b - b.hi.
+/// Let q be `first`, and r = a - q b. Then a / b = q + r / b. `second` is r.hi / b.hi, which is off
+/// from r / b by (r - r.hi - d r.hi / b.hi) / b, where d = b - b.hi.
 template <class B>
 Number<B> operator/(const Number<B>& a, const Number<B>& b) {
   const double first = a.hi / b.hi;
@@ -108,8 +108,8 @@ Number<B> operator/(const Number<B>& a, const Number<B>& b) {
 
 /// Returns the double nearest to the number, never -0.0; empty if two doubles are possible.
 /// Rounding is monotone: if both ends of the number's interval are rounded to hi, so is the number.
-/// The sums with `error` are rounded, too, by at most u |lo| + u error; the enlarged `error` covers
-/// this.
+/// The sums of x.lo and `error` are rounded, too, by at most u |lo| + u error. So `error` is
+/// enlarged first.
 template <class B>
 std::optional<double> nearest(const Number<B>& x) {
   const double error = x.error * B::factor + 4 * kUnit * std::abs(x.lo);

@@ -1,5 +1,5 @@
-// Is the distance of two triangles at most a clearance? Filters in doubles answer first. If they
-// leave a doubt, exact arithmetic answers. Triangles are as in verify/exact.h.
+// Decides whether the distance of two triangles is at most a clearance. Filters in doubles answer
+// first. If they leave a doubt, exact arithmetic answers. Triangles are as in verify/exact.h.
 #pragma once
 
 #include <array>
@@ -18,19 +18,19 @@ inline void require_clearance(const char* where, double clearance) {
     throw std::logic_error(std::string(where) + ": a clearance must be finite and not negative");
 }
 
-/// Returns the answer by exact arithmetic alone.
+/// Returns whether the distance is at most the clearance, decided by exact arithmetic alone.
 bool within_unfiltered(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                        double clearance);
 
-/// Returns the answer for triangles about which filter_planes() is `unknown`.
+/// Like within_unfiltered(), but faster. Precondition: filter_planes() answers `unknown`.
 inline bool is_within_beyond_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                                     double clearance) {
   const Triage triage = clearance > 0 ? filter_within(a, b, clearance) : Triage::unknown;
   return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
 }
 
-/// Returns the answer for any two triangles. Precondition: the clearance passes
-/// require_clearance().
+/// Returns whether the distance is at most the clearance, for any two triangles. Precondition: the
+/// clearance passes require_clearance().
 inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       double clearance) {
   const Triage triage = filter_planes(a, b, clearance);

@@ -53,9 +53,9 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
   return true;
 }
 
-// Like surely_inside(), for a rasterizer that compares the products dx (c.y - a.y) and dy (c.x -
-// a.x) in floats. Each factor and each product is off by half a unit in its last place, to the
-// worse side. The comparison is exact. The doubles here are off by only 2^-53 of these products.
+// Like surely_inside(), for a rasterizer that compares the products dx (c.y - a.y) and
+// dy (c.x - a.x) in floats. Factors and products are off by half a unit in the last place, to the
+// worse side. The comparison is exact. Here, doubles are off by only 2^-53 of the products.
 bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
   constexpr double kHalfUnit = 0x1p-24;
   const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
@@ -70,7 +70,7 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ x >> 32;
 }
 
-// Returns the first and last index of the pixels whose centre is in [lo, hi].
+// Returns the first and last index of the pixels whose centre is in [lo, hi], in a row of `size`.
 std::pair<int, int> pixels(double lo, double hi, int size) {
   return {std::max(0, static_cast<int>(std::ceil(lo + 0.5 * size - 0.5))),
           std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
@@ -106,8 +106,8 @@ void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
 }
 
-// Returns the value in the depth buffer for a depth if all programs round to nearest. With 24 bits
-// the value is cut off to a multiple of 2^-24.
+// Returns the depth buffer's value for a depth if all programs round to nearest. With 24 bits, the
+// value is rounded down to a multiple of 2^-24.
 float WorstCanvas::held(float z) const {
   const float mapped = std::min(std::max(0.5f + z * depth_scale(window_), 0.25f), 0.75f);
   if (options_.depth_bits == 32) return mapped;
@@ -129,7 +129,7 @@ float WorstCanvas::held(float z, Verb verb) const {
   float depth = std::clamp(end(Worst(0.5f) + Worst(z) * Worst(depth_scale(window_))), 0.25f, 0.75f);
   if (ask) depth = end(Worst(depth) + Worst(options_.asked_behind));
   if (options_.depth_bits == 32) return depth;
-  constexpr double kMost = 0x1p24 - 1;  // OpenGL 4.6, 2.3.5.2: rounds up or down
+  constexpr double kMost = 0x1p24 - 1;  // steps may be rounded up or down (OpenGL 4.6, 2.3.5.2)
   const double steps = depth * kMost;   // exact: at most 48 bits
   return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }

@@ -1,6 +1,6 @@
 // A canvas without a GPU that satisfies the device assumptions (docs/reliability.md). If the
-// assumptions allow several results, it takes the worst result for culling. It models the steps
-// that a coordinate takes through a rasterizer. It does not use the terms of the error budget.
+// assumptions allow several results, the canvas takes the worst result for culling. It models the
+// steps of a coordinate through a rasterizer, without the terms of the error budget.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct WorstCanvasOptions {
   /// the floats that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
   bool exact_samples = false;
   /// An asked depth lies this far behind D(exit), the mapped exit depth, as on a GL device. Tests
-  /// set less, to show that culling then misses pairs.
+  /// set a smaller value, to show that culling then misses pairs.
   float asked_behind = kAskedBehind;
   /// 0: each program rounds depths the worst way: stored depths up, asked depths down. Otherwise a
   /// seed: each program rounds each depth up or down at random.
@@ -36,7 +36,7 @@ struct WorstCanvasOptions {
 ///   converts them to 24 bits, in its own direction. With exact_samples both programs round to
 ///   nearest, as the native canvas does. A query sees exactly the fragments that pass (A6).
 /// - Triangles (fixed depth) are sampled at pixel centres without displacement. Both programs round
-///   depths in the same direction. The assumptions do not cover triangles.
+///   depths alike. The assumptions do not cover triangles.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});

@@ -1,4 +1,4 @@
-// Base64 and SHA-256, computed byte by byte.
+// Implements Base64 (RFC 4648) and SHA-256 (FIPS 180-4).
 #include "core/base/bytes.h"
 
 #include <algorithm>
@@ -6,11 +6,11 @@
 namespace farcull {
 namespace {
 
-// Base64: three bytes become four digits of six bits each. '=' pads the last group.
+// The 64 digits of Base64. Three bytes become four digits of six bits each.
 constexpr std::string_view kDigits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-// SHA-256 in the notation of FIPS 180-4, sections 5.1.1 (padding) and 6.2 (hash).
+// SHA-256 constants K (FIPS 180-4, section 4.2.2). Variables below are named as in section 6.2.
 constexpr std::array<std::uint32_t, 64> kConstants = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,

@@ -1,4 +1,4 @@
-// Base64, and two hashes of bytes: FNV-1a and SHA-256.
+// Encodes and decodes Base64. Computes two hashes of bytes: FNV-1a and SHA-256.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace farcull {
 
 /// Returns the bytes as Base64 (RFC 4648), padded, without line breaks.
 std::string to_base64(std::span<const std::uint8_t> bytes);
-/// Decodes Base64. Returns empty unless to_base64() can return `text`.
+/// Decodes the output of to_base64(). Returns empty for any other text.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
-/// FNV-1a, a 64-bit hash of a sequence of bytes, for fingerprints.
+/// FNV-1a: a fast, non-cryptographic 64-bit hash of a sequence of bytes.
 class Fnv1a {
  public:
   void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
@@ -41,7 +41,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-/// SHA-256 (FIPS 180-4), as `sha256sum` computes it. A certificate contains this hash of its pairs.
+/// SHA-256 (FIPS 180-4), a cryptographic hash of a sequence of bytes.
 class Sha256 {
  public:
   void add(std::string_view bytes);

@@ -1,4 +1,4 @@
-// Writes the members of an Error in one sentence.
+// Joins the members of an Error into one message, and replaces the parameter names in its texts.
 #include "core/base/error.h"
 
 namespace farcull {
@@ -30,7 +30,7 @@ std::string spelled(const std::string& text) {
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
     const std::string word =
         is_parameter(name) && spelling_of_program ? spelling_of_program(name) : name;
-    if (!is_parameter(name) || word.empty()) {  // not a parameter: keeps the brace
+    if (!is_parameter(name) || word.empty()) {  // copies one character: no parameter begins here
       out += text[at++];
       continue;
     }

@@ -1,12 +1,12 @@
-// The fields of a struct: its members with their names, in one list. Code that writes, adds or
-// compares all members uses this list, so a new member is added only to the list.
+// Lists the members of a struct together with their names. Code that writes, adds or compares all
+// members loops over this list. So a new member needs only one new entry in the list.
 #pragma once
 
 #include <cstddef>
 #include <string_view>
 #include <tuple>
 
-/// Use inside a struct: declares these members as its fields, in this order. Example:
+/// Use inside a struct. Lists the given members as its fields, in this order. Example:
 ///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };
 /// sizes.fields(visit) then calls visit("width", sizes.width) and visit("height", sizes.height).
 #define FARCULL_FIELDS(...)                                                                     \

@@ -1,7 +1,7 @@
 // floating_point() determines the environment by test operations. Their operands are volatile, so
-// that no compiler computes the results. FloatingPointGuard uses <cfenv>. In C libraries fenv_t
-// includes the flush-to-zero mode, and FE_DFL_ENV turns it off. The guard repeats the test
-// operations, so it notices a C library that behaves differently.
+// the operations run at run time, not in the compiler. FloatingPointGuard uses <cfenv>. In most C
+// libraries fenv_t includes the flush-to-zero mode, and FE_DFL_ENV turns this mode off. The guard
+// repeats the test operations, so it notices a C library that behaves differently.
 #include "core/base/floating_point.h"
 
 #include <array>
@@ -88,7 +88,7 @@ void require_proved(const std::string& where) {
 }
 
 FloatingPointGuard::FloatingPointGuard() {
-  std::feholdexcept(&before_);  // also turns traps off, before any arithmetic
+  std::feholdexcept(&before_);  // also disables traps, before any arithmetic
   const FloatingPoint found = floating_point();
   std::fesetenv(FE_DFL_ENV);
   try {

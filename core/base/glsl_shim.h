@@ -1,8 +1,8 @@
 // Defines the vector types, functions and macros with which a kernel file (*.glsl) compiles as C++.
 // Kernels write output parameters as FAR_OUT(t) and FAR_INOUT(t). FAR_PRECISE marks a float whose
-// computation must not be reassociated. FAR_KERNEL marks a function that several files may compile.
-// Contraction is off in all of farcull (CMakeLists.txt), so every operation is rounded once in both
-// languages.
+// computation must not be reassociated. FAR_KERNEL marks a function that several files may define.
+// CMakeLists.txt turns off fused multiply-add, so C++ rounds every operation once, as GLSL does for
+// FAR_PRECISE.
 #pragma once
 
 #include <cmath>
@@ -29,9 +29,9 @@ inline float fixed(float a) { return a; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
-// Kernels use these macros instead of bool, ?: and global constants, because a value may be a
-// vector with one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c) is the condition of
-// an `if`; c must be the same for all lanes.
+// Kernels use these macros instead of bool, ?: and global constants. A kernel may also be compiled
+// for vectors with one pixel per lane (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c) is the
+// condition of an `if`; c must be the same for all lanes.
 #define FAR_CONSTANT const float
 #define FAR_BOOL bool
 #define FAR_SELECT(c, a, b) ((c) ? (a) : (b))

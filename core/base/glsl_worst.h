@@ -1,8 +1,8 @@
 // Simulates a device whose arithmetic is as inaccurate as GLSL allows, for kernels (*.glsl)
-// compiled as C++. A Worst replaces a float. It is the range of all floats that permitted rounding
-// could give (GLSL 4.50, section 4.7.1; assumption A4). Sums, differences and products may be
-// rounded in any direction. Quotients err by at most 2.5 units in the last place, and square roots
-// by at most 5 (as 1 / inversesqrt). Operands and results below 2^-126 may be flushed to zero. A
+// compiled as C++. The class Worst replaces float. A Worst is the range of all floats that the
+// device could compute (GLSL 4.50, section 4.7.1; assumption A4 of docs/reliability.md). Sums,
+// differences and products may be rounded in any direction. Quotients err by at most 2.5 ulp, and
+// square roots by at most 5 ulp (as 1 / inversesqrt). Subnormal numbers may be flushed to zero. A
 // comparison is true only if it is true for all floats of both ranges. Include a kernel after all
 // headers, between `#define float Worst` and `#undef float`.
 #pragma once
@@ -21,7 +21,7 @@ class Worst {
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
-  /// Returns one float of the range, for a value that a kernel may choose freely.
+  /// Returns the middle of the range. Kernels call this for a value that they may choose freely.
   friend Worst fixed(Worst a) {
     return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_)));
   }
@@ -69,8 +69,8 @@ class Worst {
     return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
   }
 
-  // Widens [lo, hi] by `units` units in the last place, and rounds outward to floats. If `units` is
-  // 0, a bound that is a float is unchanged, unless it is flushed to zero.
+  // Widens [lo, hi] by `units` units in the last place, and rounds outward to floats. If flushing a
+  // subnormal bound to zero widens the range, the bound becomes 0.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

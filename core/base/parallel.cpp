@@ -1,4 +1,4 @@
-// Keeps a pool of threads, because starting a thread takes as long as a small step of a query.
+// Keeps a pool of threads, because starting a new thread can take longer than its work.
 #include "core/base/parallel.h"
 
 #include <condition_variable>
@@ -15,10 +15,10 @@
 namespace farcull {
 namespace {
 
-// The stop flag of the StoppableCall that this thread works for; null if there is none.
+// The stop flag of the StoppableCall that this thread works for. Null: there is no such call.
 thread_local const std::atomic<bool>* stop_requested = nullptr;
 
-// While the object exists, the calling thread works for the StoppableCall with this stop flag.
+// Sets stop_requested to `request` for the lifetime of the object.
 class WorksFor {
  public:
   explicit WorksFor(const std::atomic<bool>* request)
@@ -31,8 +31,8 @@ class WorksFor {
   const std::atomic<bool>* before_;
 };
 
-// A waiting thread spins this long before it sleeps. Usually the next step of a query comes sooner
-// than a sleeping thread could wake up.
+// A waiting thread spins this long before it sleeps. New work usually arrives sooner than a
+// sleeping thread could wake up.
 constexpr std::chrono::microseconds kSpin{50};
 
 template <class Done>
@@ -49,8 +49,8 @@ bool spin_until(const Done& done) {
   return done();
 }
 
-// Blocks all signals in the calling thread while the object exists. A thread that is started
-// meanwhile keeps them blocked, so only threads of farcull's caller receive signals.
+// Blocks all signals in the calling thread while the object exists. A thread started during this
+// time inherits the blocked signals. So only threads of farcull's caller receive signals.
 class SignalsBlocked {
  public:
 #ifndef _WIN32
@@ -68,14 +68,14 @@ class SignalsBlocked {
 #endif
 };
 
-// One call of run_parts(). Exists until the call returns.
+// The parts of one call of run_parts(). The object exists until the call returns.
 struct Batch {
   void (*part)(const void*, std::size_t);
   const void* data;
   std::size_t parts;
   const std::atomic<bool>* stop_request;  // the stop flag of the calling thread
-  std::size_t next = 0;                   // number of begun parts; guarded by the pool's mutex
-  std::atomic<std::size_t> done = 0;      // number of finished parts
+  std::size_t next = 0;                   // number of parts begun; guarded by the pool's mutex
+  std::atomic<std::size_t> done = 0;      // number of parts finished
 };
 
 class Pool {
@@ -102,12 +102,12 @@ class Pool {
   }
 
  private:
-  // Returns a part of the batch that no thread has begun, or 0 if there is none.
+  // Claims the next part of the batch and returns its index. Returns 0 if all parts are claimed.
   std::size_t claim_of(Batch& batch) {
     const std::lock_guard lock(mutex_);
     return batch.next < batch.parts ? claim(batch) : 0;
   }
-  // Preconditions: the caller holds the mutex, and the batch has a part that is not begun.
+  // Preconditions: the caller holds the mutex, and the batch has an unclaimed part.
   std::size_t claim(Batch& batch) {
     --waiting_;
     const std::size_t k = batch.next++;
@@ -115,7 +115,7 @@ class Pool {
     return k;
   }
 
-  // Starts threads until there are `count`, or until starting fails. The caller holds the mutex.
+  // Starts threads until there are `count`, or until a start fails. The caller holds the mutex.
   void need_threads(std::size_t count) {
     const SignalsBlocked blocked;
     try {
@@ -141,7 +141,7 @@ class Pool {
         batch.part(batch.data, k);
       }
       lock.lock();
-      // Reads `parts` before `done` grows: run_parts() may destroy the batch when all are done.
+      // Reads `parts` before increasing `done`. When all parts are done, the batch is destroyed.
       const std::size_t parts = batch.parts;
       const bool last = batch.done.fetch_add(1) + 1 == parts;
       lock.unlock();
@@ -151,13 +151,13 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
-  std::deque<Batch*> batches_;            // batches with a part that is not begun
-  std::atomic<std::size_t> waiting_ = 0;  // parts that are not begun; changed under the mutex
+  std::deque<Batch*> batches_;            // batches with unclaimed parts
+  std::atomic<std::size_t> waiting_ = 0;  // number of unclaimed parts; written under the mutex
   std::size_t threads_ = 0;
 };
 
-// Returns the pool. It is never destroyed: its threads sleep until the process ends. A forked
-// process has none of these threads, so it makes a new pool.
+// Returns the pool. The pool is never destroyed: its threads sleep until the process ends. A forked
+// process has none of these threads, so the fork handler makes a new pool.
 Pool& pool() {
   static std::atomic<Pool*> current = [] {
 #ifndef _WIN32
@@ -185,7 +185,7 @@ void stop_point() {
 struct StoppableCall::State {
   std::function<void()> work;
   std::atomic<bool> stop = false;
-  std::exception_ptr failure;  // written before `ended`
+  std::exception_ptr failure;  // set before `ended` becomes true
   std::mutex mutex;
   std::condition_variable changed;
   bool ended = false;  // guarded by the mutex

@@ -1,5 +1,5 @@
-// Divides work among all cores, in contiguous chunks or item by item. Also runs calls that can be
-// stopped. All threads of farcull are started here.
+// Divides work among all cores, in contiguous chunks or item by item. Also runs a function in a way
+// that another thread can stop. All threads of farcull are started here.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 
 namespace farcull {
 
-/// Calls part(data, k) once for each k in 0 .. parts - 1, in the calling thread and in pooled
-/// threads. `part` may call run_parts(). If no pooled thread is free, the calling thread makes all
-/// calls. Returns when all calls of `part` have returned. `part` must not throw.
+/// Calls part(data, k) once for each k in 0 .. parts - 1, in the calling thread and in threads of a
+/// pool. If no thread of the pool is free, the calling thread makes all calls. Returns when all
+/// calls of `part` have returned. `part` must not throw. `part` may call run_parts().
 void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
 
-/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, in parallel if
-/// threads are free. `work` runs with rounding to nearest and with subnormals, even if the caller's
-/// environment differs. A chunk must not wait for another chunk. If several calls of `work` throw,
-/// the exception of the lowest chunk is rethrown here.
+/// Cuts 0 .. count - 1 into `chunks` contiguous ranges, and calls work(chunk, begin, end) for each,
+/// in parallel if threads are free. `work` runs in the environment kProved (floating_point.h), even
+/// if the caller's environment differs. A chunk must not wait for another chunk. If several calls
+/// of `work` throw, the exception of the chunk with the lowest number is rethrown here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -45,7 +45,7 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
 }
 
 /// Returns the number of chunks for `count` items: `threads`, or the number of cores if `threads`
-/// is 0. Returns fewer (at least 1) if a chunk would have fewer than `least` items.
+/// is 0. Returns a smaller number (at least 1) if a chunk would have fewer than `least` items.
 inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
   const std::size_t cores =
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
@@ -53,8 +53,8 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
 }
 
 /// Calls work(k, memory) once for each k in 0 .. count - 1. A free thread takes the next k. Each
-/// thread makes one Memory for all its calls. threads: number of threads; 0: one per core. An
-/// exception of `work` is rethrown here.
+/// thread makes one Memory for all its calls. threads: number of threads; 0: one per core. If
+/// `work` throws, rethrows the exception.
 template <class Memory, class Work>
 void for_each_with_memory(std::size_t count, unsigned threads, const Work& work) {
   const std::size_t chunks = chunks_for(count, 1, threads);
@@ -72,7 +72,7 @@ void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
   for_each_with_memory<Nothing>(count, threads, [&](std::size_t k, Nothing&) { work(k); });
 }
 
-/// Thrown inside a call that was stopped. Not an Error, because stopping is no mistake.
+/// Thrown by stop_point() to end a stopped call. This is not an Error, because nothing failed.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }
@@ -82,23 +82,23 @@ class Stopped : public std::exception {
 /// run_parts() and for_chunks() call this function first.
 void stop_point();
 
-/// Runs `work` in its own thread. The threads that help in for_chunks() stop on the same request.
-/// All these threads block signals, so only the caller's threads receive them. The thread inherits
-/// the floating-point environment of the thread that constructs the object.
+/// Runs `work` in a new thread. Threads of the pool that help in for_chunks() stop on the same
+/// request. All these threads block signals, so only the caller's threads receive signals. The new
+/// thread inherits the floating-point environment of the thread that constructs the object.
 class StoppableCall {
  public:
-  /// Throws std::system_error if no thread can be started. `work` has not run then.
+  /// Throws std::system_error if no thread can be started. In this case `work` does not run.
   explicit StoppableCall(std::function<void()> work);
   /// Waits until the work has ended.
   ~StoppableCall();
   StoppableCall(const StoppableCall&) = delete;
   StoppableCall& operator=(const StoppableCall&) = delete;
 
-  /// Asks the work to stop at its next stop_point(). The work may end before it reaches one.
+  /// Asks the work to stop at its next call of stop_point(). The work may end without such a call.
   void stop();
-  /// Waits until the work has ended, but not longer than `most`. Returns true if it has ended.
+  /// Waits until the work has ended, for at most `most`. Returns true if the work has ended.
   bool wait_for(std::chrono::milliseconds most);
-  /// Waits until the work has ended. Rethrows its exception (Stopped if it was stopped).
+  /// Waits until the work has ended. If the work threw, rethrows its exception, such as Stopped.
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every platform.
+// Pseudorandom numbers that are the same on every platform.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ constexpr std::uint64_t scrambled(std::uint64_t x) {
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
-/// A constant for mixing bits: 2^64 divided by the golden ratio.
+/// 2^64 divided by the golden ratio: an odd constant for mixing bits.
 constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
 /// Random numbers from std::mt19937_64, whose output the C++ standard specifies. The distributions
@@ -23,7 +23,7 @@ class RandomNumbers {
   explicit RandomNumbers(std::uint64_t seed) : words_(seed) {}
 
   std::uint64_t word() { return words_(); }
-  /// Returns a number in [0, 1), made of the 53 high bits of a word.
+  /// Returns a number in [0, 1): the 53 high bits of a word, divided by 2^53.
   double unit() { return static_cast<double>(word() >> 11) * 0x1p-53; }
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
   /// Returns -1 or 1.

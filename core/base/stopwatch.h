@@ -1,4 +1,4 @@
-// Measures the wall-clock time since the object was constructed, for the times of stages.
+// Measures the wall-clock time since the construction of the object, in ms.
 #pragma once
 
 #include <chrono>

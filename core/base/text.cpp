@@ -1,4 +1,4 @@
-// Finds likely words by edit distance. Gets properties of a terminal from POSIX or Windows.
+// Finds the intended word by edit distance. Asks POSIX or Windows about the terminal.
 #include "core/base/text.h"
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 namespace farcull {
 namespace {
 
-// Returns the least number of edits that turn `a` into `b` (optimal string alignment).
-// likely_word() in text.h defines an edit. apart[i][k]: edits from the first i letters of `a` to
-// the first k letters of `b`.
+// Returns the least number of edits that turn `a` into `b` (optimal string alignment distance).
+// The comment at likely_word() in text.h defines an edit. apart[i][k] is the distance between the
+// first i letters of `a` and the first k letters of `b`.
 std::size_t letters_apart(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> apart(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   const auto same = [&](std::size_t i, std::size_t k) {

@@ -1,5 +1,5 @@
-// A vector of plain data whose resize() does not initialize memory. Use it for arrays that are
-// completely written right after resize().
+// A vector of plain data whose resize() does not initialize the new elements. Use this vector for
+// arrays that are completely written right after resize().
 #pragma once
 
 #include <memory>

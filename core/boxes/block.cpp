@@ -1,5 +1,5 @@
-// Computes bounds of triangles in registers, and converts them to floats and columns.
-// spatial_order() halves a set of boxes along the axis on which the boxes are spread most.
+// Computes the boxes of triangles in registers, and stores them as columns of floats.
+// spatial_order() splits a set of boxes along the axis on which the box centres are spread most.
 #include "core/boxes/block.h"
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 
-// The bounds of points; relative_to() converts them to floats.
+// The box around some points, in doubles. relative_to() converts the box to floats.
 #ifdef __SSE2__
 struct Bounds {
   __m128d lo_xy, lo_z, hi_xy, hi_z;
@@ -36,7 +36,7 @@ struct Bounds {
     _mm_store_sd(out.hi.data() + 2, hi_z);
     return out;
   }
-  // Precondition: `origin` bounds a single point.
+  // Precondition: `origin` is the box of a single point.
   FloatBox relative_to(const Bounds& origin) const {
     const auto floats = [](__m128d xy, __m128d z) {
       const __m128 all = _mm_movelh_ps(_mm_cvtpd_ps(xy), _mm_cvtpd_ps(z));
@@ -93,7 +93,7 @@ FloatBox relative_box(const Bounds& bounds, double half, const Bounds& origin) {
   return of(grow(bounds.box(), half)).relative_to(origin);
 }
 
-// Writes the boxes box(0) .. box(15) to the columns of `out`, and the box around them to out.bound.
+// Writes box(0) .. box(15) to the columns of `out`, and the box around these boxes to out.bound.
 template <class BoxAt>
 void fill_columns(const BoxAt& box, BlockLanes& out) {
 #ifdef __SSE2__
@@ -126,13 +126,13 @@ void fill_columns(const BoxAt& box, BlockLanes& out) {
 #endif
 }
 
-// A box to be put in order. `half` has half sides, because a full side may be infinite in doubles.
+// A box to sort. `half` holds half the side lengths, because a side length may overflow.
 struct Placed {
   std::array<double, 3> middle, half;
   std::uint32_t box;
 };
 
-// The axis on which the middles of the boxes are spread most, and their range [lo, hi] on it.
+// The axis on which the middles of the boxes have the widest range, and this range [lo, hi].
 struct Spread {
   std::size_t axis = 0;
   double lo = 0, hi = 0;
@@ -156,14 +156,14 @@ Spread spread_of(std::span<const Placed> items, std::size_t step) {
   return out;
 }
 
-// Puts the items in order. `at`: the position of the first item among all boxes.
+// Sorts the items as spatial_order() requires. at: position of the first item among all boxes.
 void sort_in_place(std::span<Placed> items, std::size_t at) {
   while (items.size() > kWide) {
     Spread spread = spread_of(items, std::max<std::size_t>(items.size() / 32, 4));
     if (spread.half() == 0) spread = spread_of(items, 1);
     if (spread.half() == 0) return;
-    // Moves boxes that span the whole spread to the front, since they would enlarge either half.
-    // Splits them off if they are at most half of the items, so the depth stays O(log n).
+    // Moves boxes that span the whole range to the front, since they would enlarge their half.
+    // Sorts these boxes separately if they are at most half of the items, to limit the depth.
     const auto rest = std::partition(items.begin(), items.end(), [&](const Placed& item) {
       const double middle = item.middle[spread.axis], half = item.half[spread.axis];
       return middle - half <= spread.lo && middle + half >= spread.hi;
@@ -174,7 +174,7 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
       items = items.subspan(large);
       at += large;
     }
-    // Splits near the middle, at a position where a tree node of the largest fitting height ends.
+    // Splits near the middle, at a position where a tree node with `node` leaves ends.
     std::size_t node = 1;
     while (node * kWide < items.size()) node *= kWide;
     const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;
@@ -196,7 +196,7 @@ FloatBox relative(const Box& box, const Vec3& origin) {
 }
 
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  // Each of the three corners has its own bounds, so that the updates need not wait for each other.
+  // Each corner has its own bounds, so that the processor can update the three bounds in parallel.
   Bounds a = Bounds::empty(), b = a, c = a;
   const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
   for (std::uint32_t t = from; t < to; ++t) {

@@ -1,11 +1,11 @@
-// Boxes of triangles. Boxes in doubles are grown by half the clearance, so the boxes of two
-// triangles that are at most the clearance apart overlap. Boxes in floats are stored as columns of
-// sixteen, for lanes (vector instructions), and in trees. spatial_order() makes tree nodes compact.
+// Boxes of triangles. The clearance is the largest distance at which two triangles still count as
+// colliding. Boxes in doubles are grown by half the clearance, so the boxes of such triangles
+// overlap. Boxes in floats are stored sixteen at a time as columns, for vector instructions.
 //
 // Boxes in floats are relative to a common origin and rounded. Subtraction and rounding are
-// monotone. So boxes that overlap in doubles overlap in floats, and no margin is needed. If boxes
-// overlap in floats and do not only touch, they overlap in doubles. So only boxes that touch in
-// floats are compared again in doubles.
+// monotone. So boxes that overlap in doubles also overlap in floats, and no margin is needed. Boxes
+// whose interiors overlap in floats also overlap in doubles. So only boxes that touch in floats are
+// compared again in doubles.
 #pragma once
 
 #ifdef __SSE2__
@@ -25,14 +25,14 @@
 
 namespace farcull {
 
-/// Returns half the clearance, rounded up. Two boxes at most the clearance apart overlap if each is
-/// grown by the result.
+/// Returns half the clearance, rounded up. If two boxes are at most the clearance apart, they
+/// overlap after each box is grown by the result.
 inline double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
 
-/// Returns the box, grown outward by at least `half` (world units, >= 0) on every side. Returns it
-/// unchanged if it is empty or `half` is 0. The result is monotone in the box's coordinates.
+/// Returns the box, grown outward by at least `half` (world units, >= 0) on every side. Returns an
+/// unchanged box if the box is empty or `half` is 0. The result is monotone in the coordinates.
 inline Box grow(const Box& box, double half) {
   if (half == 0 || box.is_empty()) return box;
   Box out = box;
@@ -87,11 +87,11 @@ struct alignas(32) FloatBox {
   }
 };
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
-/// The empty box, which meets nothing.
+/// The empty box in floats.
 constexpr FloatBox kNowhere = {{kInfinite, kInfinite, kInfinite, 0},
                                {-kInfinite, -kInfinite, -kInfinite, 0}};
 /// Returns the box relative to a finite origin, rounded to finite floats. Returns kNowhere for an
-/// empty box. A finite box never meets kNowhere.
+/// empty box. overlap() is false for kNowhere and any finite box.
 FloatBox relative(const Box& box, const Vec3& origin);
 /// True iff the closed boxes share a point.
 inline bool overlap(const FloatBox& a, const FloatBox& b) {
@@ -116,11 +116,11 @@ BoxOf<Number> empty_box() {
   }
 }
 
-/// The number of boxes in a WideBoxes. A node has at most this many children, and a block at most
-/// this many triangles.
+/// The number of boxes in a WideBoxes. A tree node has at most this many children, and a block has
+/// at most this many triangles.
 constexpr std::uint32_t kWide = 16;
 
-/// Sixteen boxes as columns. Missing boxes are empty, so they meet nothing.
+/// Sixteen boxes, stored as one column for each coordinate. Unused places hold empty boxes.
 template <class Number>
 struct alignas(64) WideBoxes {
   std::array<std::array<Number, kWide>, 6> column;  // x0, y0, z0, x1, y1, z1
@@ -144,29 +144,29 @@ struct alignas(64) WideBoxes {
   }
 };
 
-/// Returns the closed box around the triangles from .. to - 1.
+/// Returns the closed box around the triangles from .. to - 1 of the scene.
 Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to);
 /// Writes the closed boxes of the triangles from .. to - 1 to `out`, grown outward by at least
 /// `half` (world units, >= 0) and relative to the origin.
 void relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
                     const Vec3& origin, FloatBox* out);
 
-/// At most kWide triangles and their boxes. Boxes after the last triangle meet nothing.
+/// At most kWide triangles and their boxes. The boxes after the last triangle are empty.
 struct BlockLanes {
   WideBoxes<float> boxes;
   alignas(64) std::array<std::uint32_t, kWide> triangles;
   FloatBox bound;  // the box around all boxes
 };
-/// Fills `out` with these triangles and computes their boxes from the scene, grown by `half` and
-/// relative to the origin. Returns the box around all these triangles, not grown.
+/// Fills `out` with the given triangles and their boxes. The boxes are grown by `half` and relative
+/// to the origin. Returns the box around the triangles, in world coordinates and not grown.
 Box fill_lanes(const Scene& scene, std::span<const std::uint32_t> triangles, double half,
                const Vec3& origin, BlockLanes& out);
 
 constexpr int kMostLevels = 8;  // enough for 2^32 leaves
 
-/// A tree over leaves 0 .. leaves - 1. The children of node k of height h > 0 are the nodes
-/// 16 k .. 16 k + 15 of height h - 1, as far as these exist. The boxes of the children are
-/// blocks[first[h - 1] + k]. The root is node 0 of height `levels`.
+/// A tree of boxes. The leaves 0 .. leaves - 1 have height 0. The children of node k of height h
+/// are the nodes 16 k .. 16 k + 15 of height h - 1, as far as these exist. The boxes of the
+/// children are blocks[first[h - 1] + k]. The root is node 0 of height `levels`.
 template <class Number>
 struct BoxTree {
   std::uint64_t leaves = 0;
@@ -175,11 +175,11 @@ struct BoxTree {
   BoxOf<Number> box = empty_box<Number>();       // the box around all leaves
 };
 
-/// Returns the number of blocks of a tree with this many leaves.
+/// Returns how many WideBoxes make_tree() writes for a tree with this many leaves.
 std::size_t blocks_of_tree(std::size_t leaves);
 
-/// Makes the tree over the boxes and writes its blocks_of_tree() blocks to blocks[at] and after.
-/// boxes: one per leaf; this function overwrites them.
+/// Makes a tree over the boxes. Writes the boxes of its nodes to `blocks`, from index `at` on.
+/// boxes: one per leaf; this function overwrites `boxes`.
 template <class Number>
 BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Number>> blocks,
                           std::size_t at) {
@@ -207,9 +207,9 @@ BoxTree<Number> make_tree(std::span<BoxOf<Number>> boxes, std::span<WideBoxes<Nu
   return out;
 }
 
-/// Orders boxes for a tree, so that neighbours in the order are close in space. Each cut halves the
-/// number of boxes. Boxes that span most other boxes come first, so a huge box enlarges few nodes.
-/// Boxes may be infinite. order: receives the indices of the boxes. Takes O(n log n).
+/// Orders boxes for a tree: boxes that are close in space become neighbours in the order. Splits
+/// the boxes recursively into halves. In each part, huge boxes come first, so they enlarge few
+/// nodes. Boxes may be infinite. order: receives the indices of the boxes. Takes O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Compares the boxes of two blocks in floats, on lanes: one box with as many others at once as a
-// vector holds. Only comparisons, sums and products of floats decide, without fused operations, so
+// Compares the boxes of two blocks in floats: one box with as many others at once as a vector
+// register holds. Uses comparisons, sums and products of floats, but no fused multiply-add. So
 // every instruction set gives the same pairs in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/compare.cpp"
@@ -23,8 +23,8 @@ using OneBox = boxes::OneBox<float>;
 constexpr std::size_t kLanes = boxes::kLanes<float>;
 static_assert(kWide % kLanes == 0);
 
-// Returns a mask of lanes, from lane `from` on. A lane is set if the normal of its triangle does
-// not separate the triangle from the box.
+// Returns a mask of lanes, from lane `from` on. A lane is set if its triangle and the box overlap
+// in the projection on the triangle's normal.
 HWY_INLINE hn::Mask<Numbers> near(const NormalLanes& normals, std::size_t from, const OneBox& box) {
   auto lo = hn::Zero(Numbers()), hi = lo;
   const auto add = [&](std::size_t k, hn::Vec<Numbers> low, hn::Vec<Numbers> high) {
@@ -89,7 +89,7 @@ struct Comparison {
       if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
     }
   }
-  // Returns a mask of b's boxes, from lane `from` on, that meet triangle `row` along its normal.
+  // Returns a mask of b's boxes that overlap triangle `row` of a in the projection on its normal.
   HWY_INLINE hn::Mask<Numbers> near_row(std::size_t row, std::size_t from) const {
     auto lo = hn::Zero(Numbers()), hi = lo;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -102,7 +102,7 @@ struct Comparison {
     return hn::And(hn::Le(lo, hn::Set(Numbers(), a_normals->hi[row])),
                    hn::Ge(hi, hn::Set(Numbers(), a_normals->lo[row])));
   }
-  // Returns a mask of the lanes, from lane `from` on, whose numbers are above `row`.
+  // Returns a mask of lanes, from lane `from` on. A lane is set if its index is above `row`.
   HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
     return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
                   hn::Set(Words(), static_cast<std::uint32_t>(row)));
@@ -173,8 +173,8 @@ void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertice
 }
 
 std::optional<NormalMargin> normal_margin(float reach, double clearance) {
-  // kMargin * farthest bounds the rounding error when a triangle and a box are compared. No box
-  // corner is farther than `farthest` from the origin (docs/reliability.md, "Boxes of blocks").
+  // No box corner is farther than `farthest` from the origin. kMargin * farthest bounds the
+  // rounding error of a comparison with a box (docs/reliability.md, "Boxes of blocks").
   constexpr double kMargin = 0x1p-20;
   const double farthest = 1.74 * static_cast<double>(reach);  // 1.74 > sqrt(3)
   if (!(farthest >= 0x1p-60 && farthest <= 0x1p60)) return std::nullopt;
@@ -186,7 +186,7 @@ void fill_normals(const Scene& scene, std::span<const std::uint32_t> triangles, 
                   const NormalMargin& margin, NormalLanes& out) {
   std::array<std::array<std::array<float, kWide>, 3>, 3> corner;  // corner, coordinate, lane
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last triangle. The lane's box in BlockLanes is empty.
+    // An unused lane repeats the last triangle. The box of an unused lane in BlockLanes is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 at = scene.vertices[scene.triangles[t][c]] - origin;

@@ -1,4 +1,4 @@
-// Keeps results of a frame of a scene for the next frame.
+// Finds the pairs of overlapping blocks in a frame, from the results of the previous frame.
 #include "core/boxes/frames.h"
 
 #include <algorithm>
@@ -10,12 +10,12 @@ namespace farcull {
 namespace {
 
 // Returns the overlapping pairs of blocks with at least one moved block, each pair once. moved: per
-// block, 1 if it moved. moved_blocks: the blocks that moved, ascending.
+// block, 1 if the block moved, else 0. moved_blocks: the moved blocks, ascending.
 BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverlap>& meetings,
                           const TriangleBlocks& blocks, std::span<const std::uint8_t> moved,
                           const std::vector<std::uint32_t>& moved_blocks, unsigned threads) {
   struct Question {
-    std::uint32_t block, of, with;  // a block of object `of`, to be compared with object `with`
+    std::uint32_t block, of, with;  // compare this block of object `of` with object `with`
     bool second;                    // `of` is the second object of its meeting
   };
   std::vector<Question> questions;
@@ -37,7 +37,7 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
       own.clear();
       pair_blocks(trees, of, with, block, block + 1, SIZE_MAX, own, true);
       for (const auto& [a, b] : own) {
-        // If both blocks moved, the pair is found twice, so one finding is dropped.
+        // A pair of two moved blocks is found twice, once for each block. Keeps one of the two.
         if (of == with) {
           if (!moved[b] || a <= b) found[chunk].inside.push_back({std::min(a, b), std::max(a, b)});
         } else if (!second) {
@@ -57,8 +57,8 @@ BlockPairs pairs_of_moved(const BlockTrees& trees, const std::vector<ObjectOverl
 }
 
 // Returns the decision for a frame in which some blocks moved. Recomputes the boxes, trees and
-// pairs of these blocks. Returns empty if decide_by_meetings() decides. Returns empty if many more
-// pairs of blocks overlap than when the blocks were made.
+// pairs of the moved blocks. Returns empty if decide_by_meetings() returns a decision, or if many
+// more pairs of blocks overlap than when the blocks were made.
 std::optional<BlockDecision> decision_of_moved(const Scene& scene, unsigned threads,
                                                FrameMemory& memory) {
   constexpr std::size_t kMostGrowth = 2;

@@ -1,6 +1,6 @@
-// Finds pairs of overlapping boxes with a tree, item by item, several items in parallel. For item
-// a, only pairs with items b > a are found, so the result is sorted by a. If there are few owners,
-// the tree's leaves are grouped by owner, and an item is only compared with leaves of later owners.
+// Finds pairs of overlapping boxes with a tree, item by item, several items in parallel. next()
+// keeps only pairs (a, b) with b > a, so its result is sorted. If there are few owners, the leaves
+// of the tree are grouped by owner, and an item is compared only with leaves of later owners.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -55,8 +55,8 @@ HWY_EXPORT(find_leaves_here);
 namespace {
 
 // Calls find(begin, end, memory, flush) for successive portions of 0 .. count - 1. Each thread has
-// one Memory, and `find` appends to memory.pairs. flush() gives memory.pairs to `take` if the list
-// is long. The remaining pairs are given at the end. Returns the number of pairs given.
+// one Memory, and `find` appends pairs to memory.pairs. If this list is long, flush() gives the
+// pairs to `take`. Gives the remaining pairs at the end. Returns the number of pairs given.
 template <class Memory, class Take, class Find>
 std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::size_t threads,
                             const Take& take, const Find& find) {
@@ -86,13 +86,13 @@ std::uint64_t give_portions(std::uint64_t count, std::uint64_t portion, std::siz
   return given;
 }
 
-// With fewer items than this, a second thread costs more time than it saves.
+// If there are fewer items than this, a second thread costs more time than it saves.
 constexpr std::size_t kLeast = 4096;
-// About this many pairs are found at a time, so that they stay in caches until they are copied.
+// all() finds about this many pairs at a time, so that the pairs are still in caches when copied.
 constexpr std::size_t kPortion = std::size_t{1} << 18;
 
-// True if owners ascend with the items and there are at most kWide owners. Then leaves are grouped
-// by owner. This costs a few more nodes, but overlaps inside an owner are never examined.
+// True if owners never decrease along the items and there are at most kWide owners. In this case
+// leaves are grouped by owner: this costs a few tree nodes, but skips overlaps inside an owner.
 bool are_few(std::span<const std::uint32_t> owners) {
   std::size_t changes = 0;
   for (std::size_t k = 1; k < owners.size() && changes < kWide; ++k) {
@@ -162,8 +162,8 @@ OrderedPairs::OrderedPairs(std::span<const Box> boxes, std::span<const std::uint
   plant(std::move(own));
 }
 
-// Drops each item whose box overlaps the box of no other owner. Such an item has no pair. An
-// owner's box is the box around all its items. Precondition: are_few(owner_).
+// Drops items that cannot have a pair: their box overlaps the box of no other owner. The box of an
+// owner is the box around all its items. Precondition: are_few(owner_).
 void OrderedPairs::drop_apart(std::vector<Box>& boxes) {
   std::vector<Box> of_owner;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -204,7 +204,7 @@ void OrderedPairs::plant(std::vector<Box> boxes) {
   tree_ = make_tree<double>(leaves, blocks_, 0);
 }
 
-// Sets part.found to the items of all leaves >= `least` whose boxes overlap the box of `leaf`.
+// Sets part.found to the items of the leaves >= `least` whose boxes overlap the box of `leaf`.
 void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) const {
   part.found.clear();
   const Box box = blocks_[tree_.first[0] + leaf / kWide].get(leaf % kWide);
@@ -213,8 +213,8 @@ void OrderedPairs::find(std::uint32_t leaf, std::uint32_t least, Part& part) con
   for (std::uint32_t& other : part.found) other = order_[other];
 }
 
-// Returns the first item of a later owner. Precondition: leaves are grouped by owner. Owners then
-// ascend with the items, so the result is also the first leaf of a later owner.
+// Returns the first item of a later owner. Precondition: leaves are grouped by owner, in the order
+// of the items. So the result is also the first leaf of a later owner.
 std::uint32_t OrderedPairs::first_of_later_owners(std::uint32_t item) const {
   const auto behind = std::ranges::upper_bound(owner_, owner_[item]);
   return static_cast<std::uint32_t>(behind - owner_.begin());
@@ -252,8 +252,8 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
   std::vector<TrianglePair> pairs, some;
   while (!at_end() && pairs.size() <= most) {
     next(std::clamp<std::size_t>(most, 1, kPortion), some);
-    // Reserves memory for all pairs, estimated from the share of items that are done. Reserves 2 to
-    // 8 times what is needed now, because each growth copies the list.
+    // Reserves memory for the estimated number of all pairs, so that the list is rarely copied.
+    // Reserves at least 2 times and at most 8 times the memory needed now.
     const std::size_t needed = pairs.size() + some.size();
     const double factor = std::clamp(1 / share(), 2.0, 8.0);
     if (needed > pairs.capacity())
@@ -265,7 +265,7 @@ std::vector<TrianglePair> OrderedPairs::all(std::size_t most) {
 }
 
 std::uint64_t OrderedPairs::give(const TakePairs& take) {
-  constexpr std::uint32_t kLeaves = 64;  // leaves that a thread takes at a time
+  constexpr std::uint32_t kLeaves = 64;  // number of leaves that a thread takes at a time
   std::atomic<std::uint64_t> compared = 0;
   const std::uint64_t given = give_portions<Part>(
       items_.size(), kLeaves, chunks_for(items_.size(), kLeaves, threads_), take,
@@ -303,7 +303,7 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
       append(next_ + static_cast<std::uint32_t>(k), part);
     part.complete = part.done == end - begin;
   });
-  // Joins the parts in order, up to the first incomplete part. Later items are searched again.
+  // Joins the parts in order, up to the first incomplete part. The next call continues from there.
   bool full = false;
   for (std::size_t chunk = 0; chunk < chunks && !full; ++chunk) {
     const Part& part = parts_[chunk];
@@ -340,7 +340,7 @@ BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> region
 }
 
 void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint32_t> changed) {
-  std::vector<std::uint32_t> children;  // nodes of one height with changed boxes; at first leaves
+  std::vector<std::uint32_t> children;  // the nodes of one height whose boxes changed
   for (std::size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
     const auto behind = std::ranges::upper_bound(first_, changed[begin]);
     const auto object = static_cast<std::uint32_t>(behind - first_.begin() - 1);
@@ -352,7 +352,7 @@ void BlockTrees::update(const TriangleBlocks& blocks, std::span<const std::uint3
       children.push_back(leaf);
     }
     for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
-      std::size_t found = 0;  // number of parents; they overwrite the front of `children`
+      std::size_t found = 0;  // number of parents, which overwrite the first entries of `children`
       for (const std::uint32_t child : children) {
         const std::uint32_t node = child / kWide;
         if (found > 0 && children[found - 1] == node) continue;
@@ -383,13 +383,13 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 
 namespace {
 
-// The lanes of the blocks in some pairs.
+// The lanes of all blocks that occur in some pairs.
 struct Lanes {
   std::vector<std::uint32_t> place;  // per block: index of its lanes, or TriangleBlocks::kNoLanes
-  UninitializedVector<BlockLanes> more;  // their indices follow those of TriangleBlocks::lanes
+  UninitializedVector<BlockLanes> more;  // the indices follow those of TriangleBlocks::lanes
 };
 
-// Calls work(block, triangles of the block) for each block in `some`.
+// Calls work(block, triangles) for each block in `some`, with the triangles of the block.
 template <class Work>
 void for_triangles_of(const Scene& scene, const TriangleBlocks& blocks,
                       std::span<const std::uint32_t> some, unsigned threads, const Work& work) {
@@ -423,7 +423,7 @@ Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPair
   return out;
 }
 
-// Returns the vertices of blocks, indexed by Lanes::place. Fills in only the blocks of the pairs.
+// Returns the vertex indices of blocks, indexed by Lanes::place. Sets only the blocks in `pairs`.
 UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleBlocks& blocks,
                                              const Lanes& lanes, std::span<const BlockPair> pairs,
                                              unsigned threads) {
@@ -439,8 +439,8 @@ UninitializedVector<VertexBlock> vertices_of(const Scene& scene, const TriangleB
   return out;
 }
 
-// Returns the normals of blocks, indexed by Lanes::place. Fills in only the blocks of the pairs.
-// Returns no normals if floats cannot hold the coordinates.
+// Returns the normals of blocks, indexed by Lanes::place. Sets only the blocks in `pairs`. Returns
+// an empty vector if the coordinates are too large or too small for floats.
 UninitializedVector<NormalLanes> normals_of(const Scene& scene, const TriangleBlocks& blocks,
                                             const Lanes& lanes, const BlockPairs& pairs,
                                             double clearance, unsigned threads) {
@@ -505,7 +505,7 @@ std::uint64_t give_pairs_of_some(const Scene& scene, const TriangleBlocks& block
   };
   std::uint64_t given = give(some.between, {});
   if (neighbours) return given + give(some.inside, {});
-  // Keeps the vertices of one part of the pairs at a time. Few blocks occur in two parts.
+  // Holds the vertex indices for only one part of the pairs at a time, to save memory.
   constexpr std::size_t kParts = 8, kLeastOfPart = std::size_t{1} << 16;
   const std::size_t part = std::max(some.inside.size() / kParts, kLeastOfPart);
   for (std::size_t from = 0; from < some.inside.size(); from += part) {

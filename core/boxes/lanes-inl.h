@@ -1,5 +1,5 @@
-// Compares one box with the sixteen boxes of a block, or with the boxes of a tree, on the lanes of
-// this processor. Compiled once for each instruction set (hwy/foreach_target.h).
+// Compares one box with the sixteen boxes of a block, or with the boxes of a tree, by vector
+// instructions. Compiled once for each instruction set (hwy/foreach_target.h).
 #if defined(FARCULL_BOXES_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_BOXES_LANES_INL_H_
 #undef FARCULL_BOXES_LANES_INL_H_
@@ -25,7 +25,7 @@ using Vector = hn::Vec<Tag<Number>>;
 template <class Number>
 constexpr std::size_t kLanes = hn::MaxLanes(Tag<Number>());
 
-/// One box, copied to all lanes.
+/// One box, with each coordinate copied to all lanes of a vector.
 template <class Number>
 struct OneBox {
   Vector<Number> x0, y0, z0, x1, y1, z1;
@@ -64,7 +64,7 @@ HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std
   return hn::And(hn::And(x, y), z);
 }
 
-/// As overlapping(), but without boxes that only touch the box.
+/// Returns a mask like overlapping(), but without the boxes that only touch the box.
 template <class Number>
 HWY_INLINE hn::Mask<Tag<Number>> overlapping_inside(const WideBoxes<Number>& block,
                                                     std::size_t from, const OneBox<Number>& box) {
@@ -84,7 +84,7 @@ HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
   return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8);
 }
 
-/// Returns overlapping() for all sixteen boxes, as bits.
+/// Returns overlapping() for all sixteen boxes of the block, one bit for each box.
 template <class Number>
 HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
                                           const OneBox<Number>& box) {
@@ -96,8 +96,8 @@ HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
 
 using Gaps = std::array<double, kWide>;
 
-/// Sets `squares` to the squared gaps between a box and the boxes of a block. Returns bits: bit k
-/// is set if squares[k] is at most `square_limit`.
+/// Sets squares[k] to the squared distance between a box and box k of a block. Bit k of the result
+/// is set if squares[k] <= square_limit.
 HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox<double>& box,
                                     double square_limit, Gaps& squares) {
   const Tag<double> n;
@@ -125,9 +125,9 @@ HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
   return bit;
 }
 
-/// Calls visit(leaf) for the leaves >= `least` that a search of the tree reaches, in a fixed order.
-/// bits_of_block(k) returns a bit for each child in block k that is searched. Returns how many
-/// blocks were examined.
+/// Searches a tree, and calls visit(leaf) for each leaf >= `least` that the search reaches, in a
+/// fixed order. Bit i of bits_of_block(k) tells whether to search child i of block k. Returns how
+/// many blocks were examined.
 template <class Number, class Bits, class Visit>
 HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t least,
                                     const Bits& bits_of_block, const Visit& visit) {
@@ -135,7 +135,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
     int height;
     std::uint32_t number;
   };
-  // For each level, at most 15 siblings of a searched node wait on the stack.
+  // At most 15 nodes of each level wait on the stack: the siblings of a node on the current path.
   Node stack[(kWide - 1) * kMostLevels + 1];
   int size = 0;
   if (tree.levels > 0) stack[size++] = {tree.levels, 0};
@@ -148,7 +148,7 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
       const std::uint32_t child = kWide * at.number + next_bit(bits);
       const std::uint64_t begin = std::uint64_t{child} << (4 * below);
       const std::uint64_t end = (std::uint64_t{child} + 1) << (4 * below);
-      // Skips leaves before `least` and missing boxes. An infinite box overlaps missing boxes.
+      // Skips leaves before `least`. Skips unused places: an infinite box overlaps an empty box.
       if (end <= least || begin >= tree.leaves) continue;
       if (below == 0) {
         visit(child);
@@ -160,8 +160,8 @@ HWY_INLINE std::uint64_t for_leaves(const BoxTree<Number>& tree, std::uint32_t l
   return compared;
 }
 
-/// Calls visit(leaf) for leaves >= `least` that overlap `box`. Returns how many blocks were
-/// compared.
+/// Calls visit(leaf) for each leaf >= `least` that overlaps `box`. Returns how many blocks were
+/// compared with `box`.
 template <class Number, class Visit>
 HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
                                                 const WideBoxes<Number>* blocks,

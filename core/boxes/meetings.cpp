@@ -1,4 +1,4 @@
-// Finds objects whose boxes overlap, then the overlapping boxes of these objects' blocks.
+// Finds objects whose boxes overlap, and then the overlapping boxes of the blocks of these objects.
 #include "core/boxes/meetings.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ bool collides_with_itself(const Object& object) { return object.self && object.t
 
 constexpr std::size_t kMeetingsPerBlock = 8;
 
-// A part of a meeting: the blocks from .. to - 1 of the meeting's object a, and their pairs.
+// A part of a meeting: the blocks from .. to - 1 of object a, and their overlapping pairs.
 struct MeetingPart {
   std::uint32_t meeting;
   std::uint32_t from, to;
@@ -24,8 +24,8 @@ struct MeetingPart {
 };
 constexpr std::uint32_t kBlocksOfPart = 256;
 
-// Returns the limit for the pairs of blocks of a meeting: kPairsPerBlock for each block of its
-// objects, including blocks that overlap no block.
+// Returns the limit for the pairs of blocks of a meeting: kPairsPerBlock for each block of the two
+// objects, including blocks in no pair.
 std::size_t most_pairs(const TriangleBlocks& blocks, const ObjectOverlap& meeting) {
   const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
   return kPairsPerBlock * (blocks.count(meeting.a) + b);
@@ -42,7 +42,7 @@ std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
   return parts;
 }
 
-// Moves the pairs of all parts to `out`. Returns false if a meeting has too many pairs.
+// Moves the pairs of all parts to `out`. Returns false if a meeting exceeds kPairsPerBlock.
 bool sort_in(const std::vector<ObjectOverlap>& all, std::span<MeetingPart> parts,
              BlockMeetings& out) {
   std::vector<std::uint32_t> seen(out.of->ranges.size(), 0);  // per block: 1 + its last meeting
@@ -81,10 +81,10 @@ std::size_t most_pairs(const TriangleBlocks& blocks) {
 
 enum class Found : std::uint8_t { all, too_many_of_a_meeting, too_many };
 
-// Finds the pairs of blocks of each part. Gives up a meeting with more pairs than its limit. Gives
-// up all meetings if the scene has more pairs than its limit. A meeting that is given up counts as
-// its limit + 1 pairs, so that the answer does not depend on threads. find(meeting, part, most)
-// appends pairs to the part as pair_blocks() does.
+// Finds the pairs of blocks of each part. Gives up a meeting that has more pairs than its limit.
+// Gives up all meetings if the scene has more pairs than its limit. In the sum for the scene, a
+// meeting counts as at most limit + 1 pairs. So the result does not depend on the threads.
+// find(meeting, part, most) appends pairs to the part as pair_blocks() does.
 template <class Find>
 Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>& meetings,
                   unsigned threads, std::vector<MeetingPart>& parts, const Find& find) {
@@ -95,7 +95,7 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> given_up = false;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    MeetingPart scratch;  // pairs are copied from here, so that a part holds no unused memory
+    MeetingPart scratch;  // copying pairs from here leaves no unused memory in a part
     for (std::size_t k = next++; k < parts.size(); k = next++) {
       MeetingPart& part = parts[k];
       const ObjectOverlap& meeting = meetings[part.meeting];
@@ -120,15 +120,15 @@ Found find_blocks(const TriangleBlocks& blocks, const std::vector<ObjectOverlap>
   return given_up ? Found::too_many_of_a_meeting : Found::all;
 }
 
-// Oriented boxes are used if, in a sample, they leave at most this many pairs per triangle.
+// Oriented boxes are used if they leave at most this many pairs per triangle in a sample.
 constexpr double kOrientedPerTriangle = 64;
-// Normals are compared if a sample meets three conditions. Boxes along the axes leave more than
+// Normals are compared if three conditions hold in a sample. Axis-aligned boxes leave more than
 // kFewOverlaps pairs per triangle. Normals leave at most kMostLeft pairs per triangle. Normals
 // leave at most 1 / kLeastDrop of the pairs that boxes leave. Per triangle, normals cost about as
-// much as deciding two pairs exactly, and oriented boxes as much as deciding ten.
+// much as two exact tests of pairs, and oriented boxes cost about as much as ten.
 constexpr double kFewOverlaps = 2, kLeastDrop = 4, kMostLeft = 8;
 
-// Decides all meetings by oriented boxes of blocks. Returns empty if these boxes overlap too often.
+// Finds the pairs of blocks whose oriented boxes overlap. Returns empty if there are too many.
 std::optional<BlockMeetings> oriented_meetings(const Scene& scene,
                                                const std::vector<ObjectOverlap>& meetings,
                                                std::span<const Box> regions, double clearance,
@@ -193,7 +193,7 @@ std::uint64_t triangles_in(const BlockPairs& pairs, const TriangleBlocks& blocks
 }
 
 double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, double clearance) {
-  constexpr std::size_t kSampled = 64;  // evenly spaced pairs of blocks
+  constexpr std::size_t kSampled = 64;  // number of sampled pairs of blocks, evenly spaced
   const std::size_t all = meetings.pairs.size();
   if (all == 0) return 0;
   BlockPairs some;
@@ -210,7 +210,7 @@ double overlaps_by_sample(const Scene& scene, const BlockMeetings& meetings, dou
 
 std::optional<BlockDecision> decide_by_meetings(const TriangleBlocks& blocks,
                                                 const ObjectOverlaps& meetings) {
-  // True if an object whose blocks are too small for floats can meet any object, or itself.
+  // True if floats may be too coarse for the blocks of an object in a meeting.
   const bool uneven =
       !blocks.stretched.empty() &&
       (meetings.crowded || std::ranges::any_of(meetings.all, [&](const ObjectOverlap& meeting) {

@@ -1,5 +1,5 @@
-// Computes a block's frame from the second moments of its corners. For each block, searches a tree
-// of oriented boxes for the blocks that it may meet. As in compare.cpp, only floats decide.
+// Computes the axes of a block from the second moments of its corners. For each block, searches a
+// tree of oriented boxes for overlapping blocks. Compares floats only, as compare.cpp does.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/oriented.cpp"
 #include <hwy/foreach_target.h>
@@ -36,13 +36,13 @@ HWY_INLINE Vector dot(const std::array<float, 3>& d, Vector x, Vector y, Vector 
   return hn::Add(hn::Add(hn::Mul(all(d[0]), x), hn::Mul(all(d[1]), y)), hn::Mul(all(d[2]), z));
 }
 
-// Returns a bit for each box of the block that may have a common point with `one`. The separating
-// axes are those of Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
+// Sets the bit of each box of the block that may overlap `one`. Tests the 15 separating axes of
+// Gottschalk, Lin and Manocha (SIGGRAPH 1996), in the coordinates of `one`.
 HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const OrientedBox& one,
                                        float margin) {
   std::uint32_t out = 0;
   for (std::size_t from = 0; from < kWide; from += kLanes) {
-    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: block axis k along axis i of `one`
+    Vector turned[3][3], size[3][3], apart[3];  // turned[i][k]: one.frame[i] dot block.frame[k]
     const auto dx = hn::Sub(at(block.middle, 0, from), all(one.middle[0]));
     const auto dy = hn::Sub(at(block.middle, 1, from), all(one.middle[1]));
     const auto dz = hn::Sub(at(block.middle, 2, from), all(one.middle[2]));
@@ -91,7 +91,7 @@ HWY_INLINE std::uint32_t oriented_bits(const WideOriented& block, const Oriented
   return out;
 }
 
-// Computes the boxes of a block's triangles along another block's frame.
+// Computes the boxes of a block's triangles along the axes of another block.
 HWY_INLINE void turn(const OrientedLanes& block, const Frame& frame, WideBoxes<float>& out) {
   for (std::size_t from = 0; from < kWide; from += kLanes) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -179,11 +179,11 @@ void pair_oriented(const OrientedBlocks& blocks, std::uint32_t a, std::uint32_t 
 namespace {
 
 // Margins, relative to the distance of the farthest corner from the origin. kBoxMargin bounds the
-// rounding when two oriented boxes are compared, and kTriangleMargin when two triangles are
-// compared (docs/reliability.md, "Oriented boxes").
+// rounding error of comparing two oriented boxes. kTriangleMargin bounds the rounding error of
+// comparing two triangles (docs/reliability.md, "Oriented boxes").
 constexpr double kBoxMargin = 0x1p-16, kTriangleMargin = 0x1p-20;
 
-// Sums over points: their number, their coordinates, and the products of two coordinates.
+// Sums over points: the number of points, the coordinates, and the products of two coordinates.
 struct Moments {
   double count = 0;
   Vec3 sum = Vec3::Zero();
@@ -201,8 +201,8 @@ struct Moments {
   }
 };
 
-// Returns the principal directions of the points. Any frame gives right answers if its directions
-// have length 1 and are perpendicular, up to the rounding to floats.
+// Returns the principal directions of the points. Any frame of perpendicular unit vectors, up to
+// rounding to floats, would be correct.
 Frame frame_of(const Moments& moments) {
   const Vec3 mean = moments.sum / moments.count;
   const Eigen::Matrix3d covariance = moments.products / moments.count - mean * mean.transpose();
@@ -228,7 +228,7 @@ float along(const std::array<float, 3>& d, float x, float y, float z) {
   return d[0] * x + d[1] * y + d[2] * z;
 }
 
-// Returns the box along `frame` that contains all corners of the blocks.
+// Returns the box along the axes `frame` around all triangle corners of the blocks.
 OrientedBox box_along(const Frame& frame, std::span<const OrientedLanes> blocks) {
   OrientedBox out{.frame = frame, .middle = {}, .half = {}};
   std::array<float, 3> middle;
@@ -254,12 +254,12 @@ OrientedBox box_along(const Frame& frame, std::span<const OrientedLanes> blocks)
   return out;
 }
 
-// Fills in a block's corners, frame and boxes; returns the moments of its corners.
+// Sets the corners, frame and boxes of a block. Returns the moments of its corners.
 Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangles,
                       const Vec3& origin, float margin, OrientedLanes& out) {
   Moments moments;
   for (std::size_t lane = 0; lane < kWide; ++lane) {
-    // A lane without a triangle repeats the last triangle. The lane's box in BlockLanes is empty.
+    // An unused lane repeats the last triangle. The box of an unused lane in BlockLanes is empty.
     const std::uint32_t t = triangles[std::min(lane, triangles.size() - 1)];
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 corner = scene.vertices[scene.triangles[t][c]] - origin;
@@ -287,8 +287,8 @@ Moments fill_oriented(const Scene& scene, std::span<const std::uint32_t> triangl
   return moments;
 }
 
-// Orders the triangles of an object: first those that meet the region, by spatial_order(), then the
-// others. Returns how many meet the region, and adds the boxes of these triangles to `all`.
+// Orders the triangles of an object. First come the triangles whose boxes overlap the region, in
+// the order of spatial_order(). Returns their number, and adds their boxes to `all`.
 std::uint32_t order_in(const Scene& scene, const Object& object, double clearance,
                        const Box& region, std::span<std::uint32_t> order, Box& all) {
   std::vector<Box> boxes;
@@ -313,7 +313,7 @@ std::uint32_t order_in(const Scene& scene, const Object& object, double clearanc
   return static_cast<std::uint32_t>(inside.size());
 }
 
-// Builds the tree over the blocks of an object. Its nodes are stored from nodes[at] on.
+// Builds the tree over the blocks of an object. Stores its nodes in `nodes`, from index `at` on.
 BoxTree<float> plant(std::span<const OrientedBox> leaves, std::span<const OrientedLanes> lanes,
                      std::vector<Moments> moments, std::span<WideOriented> nodes, std::size_t at) {
   BoxTree<float> out;
@@ -376,8 +376,8 @@ std::shared_ptr<const OrientedBlocks> make_oriented(const Scene& scene, double c
   blocks.origin = 0.5 * all.lo + 0.5 * all.hi;
   const Vec3 size =
       (all.lo - blocks.origin).cwiseAbs().cwiseMax((all.hi - blocks.origin).cwiseAbs());
-  // No corner is farther than `reach` from the origin. If `reach` is below 2^-60, floats lose more
-  // than the margins allow. Above 2^60, floats overflow.
+  // No corner is farther than `reach` from the origin. If `reach` is below 2^-60, underflow could
+  // exceed the margins. If `reach` is above 2^60, products could overflow.
   const double reach = 1.001 * size.norm(), gap = 1.001 * clearance;
   if (!(reach >= 0x1p-60 && reach + gap <= 0x1p60)) return nullptr;
   out->margin = static_cast<float>(kBoxMargin * reach + gap);
@@ -426,8 +426,8 @@ std::uint64_t give_pairs_of_oriented(const Scene& scene, const OrientedBlocks& b
                                      const BlockPairs& pairs, double clearance, bool neighbours,
                                      unsigned threads, const TakePairs& take) {
   const std::vector<std::uint32_t> place = blocks.blocks.lane_places();
-  // Erases neighbours from index `from` on. Pairs before `from` stay: their triangles may belong to
-  // different objects, which may share vertices.
+  // Erases pairs with a common vertex, from index `from` on. Pairs before `from` may be pairs of
+  // different objects, which are kept even if they share a vertex.
   const auto erase_from = [&](std::size_t from, std::vector<TrianglePair>& some) {
     const auto shared = [&](const TrianglePair& pair) {
       return share_index(scene.triangles[pair.a], scene.triangles[pair.b]);

@@ -1,6 +1,6 @@
-// Descends the trees of all objects that meet, from the roots to the blocks, one height at a time.
-// Moves only the boxes of nodes that are in a pair. The children of two nodes are compared in
-// floats, as the triangles of two blocks are (core/boxes/join.h).
+// Descends the trees of all objects whose boxes overlap, from the roots to the blocks, one height
+// at a time. Moves only the boxes of nodes that are in a pair. Compares the children of two nodes
+// in floats, by the function that compares the triangles of two blocks (core/boxes/compare.h).
 #include "core/boxes/rigid.h"
 
 #include <algorithm>
@@ -30,9 +30,9 @@ void list_vertices(const Scene& scene, RigidBlocks& out) {
   }
 }
 
-// Walks down the trees. All nodes of one height are numbered: node k of object o has the number
-// first[o] + k, where first[o] is the first block of o. So numbers ascend with the objects, and a
-// leaf has the number of its block.
+// Descends the trees. The nodes of one height are numbered: node k of object o has the number
+// first[o] + k, where first[o] is the first block of o. So the number of a leaf is the index of its
+// block.
 class Walk {
  public:
   Walk(const RigidBlocks& rigid, std::span<const RigidMotion> motions, double half,
@@ -44,8 +44,8 @@ class Walk {
         threads_(threads),
         place_(blocks_.ranges.size()) {}
 
-  // Returns all pairs of blocks whose moved boxes, grown by half the clearance, overlap. A few of
-  // the boxes may only nearly overlap. Returns empty if there are too many pairs at any height.
+  // Returns all pairs of blocks whose moved boxes, grown by half the clearance, overlap. Also
+  // returns pairs that touch in floats only. Returns empty if some height has too many pairs.
   std::optional<std::vector<BlockPair>> pairs(std::span<const ObjectOverlap> meetings) {
     BlockPairs out;
     int levels = 0;
@@ -55,7 +55,7 @@ class Walk {
     }
     for (int below = levels - 1; below >= 0; --below) {
       const std::vector<std::uint32_t> nodes = blocks_in(out, blocks_.ranges.size());
-      // Sets the lanes of each node to its children, which have the height `below`.
+      // Sets the lanes of each node to the node's children, which have the height `below`.
       lanes_.resize(nodes.size());
       for_chunks(nodes.size(), chunks_for(nodes.size(), 64, threads_),
                  [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -72,7 +72,7 @@ class Walk {
   }
 
  private:
-  // Fills `out` with a node's moved children. A root of height `below` or less is its own child.
+  // Sets `out` to the moved children of a node. A root of height `below` or less is its own child.
   void move_children_of(std::uint32_t node, int below, BlockLanes& out) const {
     const std::uint32_t object = rigid_.object_of[node], first = blocks_.first[object];
     const BoxTree<double>& tree = rigid_.trees[object];
@@ -93,8 +93,8 @@ class Walk {
     for (std::uint32_t k = 0; k < kWide; ++k) set(k, children.get(k), kWide * number + k);
   }
 
-  // Returns the pairs of children that overlap. If more than `most` overlap, may return only some
-  // of these pairs, but more than `most`. Otherwise the order does not depend on threads.
+  // Returns the pairs of children whose boxes overlap, in an order that does not depend on threads.
+  // If there are more than `most` pairs, may stop early, with more than `most` pairs in any order.
   std::vector<BlockPair> overlapping_children(std::span<const BlockPair> pairs,
                                               std::size_t most) const {
     constexpr std::size_t kAtOnce = 256;
@@ -133,7 +133,7 @@ class Walk {
 
 constexpr double kMost = std::numeric_limits<double>::max() / 4;
 
-// True if moving a point of the box yields no number above kMost. True for an empty box.
+// True if all numbers computed to move a point of the box are at most kMost in magnitude.
 bool keeps_finite(const RigidMotion& motion, const Box& box) {
   if (box.is_empty()) return true;
   const Vec3 most = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs());
@@ -212,7 +212,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   }
   const ObjectOverlaps meetings = find_meetings(scene, blocks, ignored);
   if (meetings.crowded) return std::nullopt;
-  // The origin is the middle of the regions where objects meet: floats are finest near the origin.
+  // Floats are finest near the origin, so the origin is the middle of all overlaps of object boxes.
   Box all = Box::empty();
   for (const auto& [a, b] : meetings.all)
     all.add(intersection(blocks.objects[a], blocks.objects[b]));
@@ -227,7 +227,7 @@ std::optional<BlockDecision> decide_by_motions(const Scene& scene,
   out.blocks.overlaps = out.blocks.pairs.size();
   out.blocks.meetings = meetings.all.size();
   out.blocks.triangles = triangles_in(out.blocks.pairs, blocks);
-  // If blocks overlap more often than this limit, oriented boxes or a tree have to decide.
+  // Above this limit, the caller must use oriented boxes or a tree.
   if (kWide * out.blocks.overlaps > kPairsPerBlock * (out.blocks.triangles + kWide * kWide))
     return std::nullopt;
   return out;
@@ -249,7 +249,7 @@ void move_vertices(std::span<const Vec3> resting, std::span<const RigidMotion> m
           }
           for (const std::uint32_t v : blocks.vertices_of(some[k])) {
             const Vec3 to = moved(motion, resting[v]);
-            // Another thread may write this vertex for another block. It writes the same numbers.
+            // Another thread may write the same numbers to this vertex, for another block.
             for (Eigen::Index axis = 0; axis < 3; ++axis)
               std::atomic_ref(scene.vertices[v][axis]).store(to[axis], std::memory_order_relaxed);
           }

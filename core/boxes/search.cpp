@@ -13,11 +13,11 @@
 namespace farcull {
 namespace {
 
-// True if the memory has results of the previous frame that can be reused. Else makes the memory
-// ready to keep results of this frame.
+// True if the memory has results of the previous frame that can be reused. Otherwise prepares the
+// memory for the results of this frame.
 bool knows_last_frame(const BoxesSettings& settings, FrameMemory& memory) {
   const std::optional<std::uint64_t> last =
-      std::exchange(memory.frame, {});  // stays empty until this frame is found
+      std::exchange(memory.frame, {});  // stays empty until find_boxes() has finished
   if (last && !settings.full && memory.moved.follows(*last) &&
       memory.clearance == settings.clearance && memory.neighbours == settings.neighbours &&
       memory.ignored == settings.ignored && (!memory.oriented || !memory.moved.any()) &&
@@ -53,11 +53,11 @@ Stage stage_of_objects(const Scene& scene, const BoxesPlan& plan, double ms) {
           .unit = Unit::triangles};
 }
 
-// Stores the pairs that blocks found for the next frame. Pairs found by a tree are not stored.
+// Stores the found pairs for the next frame if blocks found them. Stores no pairs of a tree.
 void remember(const BoxesPlan& plan, const std::vector<TrianglePair>& found, FrameMemory& memory) {
   const BlockDecision& decision = plan.decision;
   memory.frame = plan.by_tree() ? std::nullopt : std::optional(memory.moved.frame());
-  // If nothing moved, the plan has no blocks, and the pairs are those of the previous frame.
+  // If nothing moved, the plan has no blocks, and memory.oriented keeps its value.
   if (decision.blocks.of) memory.oriented = decision.blocks.oriented != nullptr;
   memory.pairs = plan.by_tree() ? std::vector<TrianglePair>() : found;
   memory.counts = {.blocks = {}, .pairs = decision.pairs, .self = decision.self};

@@ -1,5 +1,5 @@
-// Judges an object's blocks by the length of their boxes. Sorts the triangles of scattered objects
-// along a Morton curve, and those of stretched objects by spatial_order().
+// Finds scattered objects by the length of the boxes of their blocks. Sorts the triangles of these
+// objects along a Morton curve, and the triangles of stretched objects by spatial_order().
 #include "core/boxes/triangle_blocks.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
-// True if the boxes of an object's blocks are much longer than boxes of compact parts of a surface
-// would be.
+// True if the boxes of an object's blocks are much longer on average than the boxes of compact
+// parts of a surface would be.
 bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
   const std::uint32_t first = blocks.first[object], count = blocks.first[object + 1] - first;
   double sum = 0;
@@ -24,10 +24,10 @@ bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
   return count > 0 && sum / count * std::sqrt(count) > kScattered * length(blocks.objects[object]);
 }
 
-// Objects with fewer triangles are not sampled.
+// Objects with fewer triangles than this are not sampled.
 constexpr std::uint32_t kLeastSampled = 4096;
 // Returns the position of item k of a sample, in [0, 1). Multiples of the golden ratio, modulo 1,
-// are as even as a grid, but have no period. A period could match a period of the surface.
+// are evenly distributed, but not periodic. A periodic sample could match a period of the surface.
 double sampled_place(std::size_t k) {
   const double at = 0.6180339887498949 * static_cast<double>(k);
   return at - std::floor(at);
@@ -37,7 +37,7 @@ double sampled_place(std::size_t k) {
 float stretch_of(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
   if (object.triangle_count < kLeastSampled) return 0;
-  double side = 0, whole = 0;  // sums of half sides, since sides may be infinite
+  double side = 0, whole = 0;  // sums of half side lengths, because a whole side may overflow
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSample; ++k) {
@@ -62,8 +62,8 @@ void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
   }
 }
 
-// Calls work(k, threads) for k in 0 .. count - 1. If `count` is small, makes one call after the
-// other, each with all threads. Else makes the calls in parallel, each with one thread.
+// Calls work(k, threads) for k in 0 .. count - 1. If there are fewer calls than threads, makes one
+// call after the other, each with all threads. Else makes parallel calls, each with one thread.
 template <class Work>
 void for_each_of(std::size_t count, unsigned threads, const Work& work) {
   const bool few = count < chunks_for(SIZE_MAX, 1, threads);
@@ -88,10 +88,10 @@ void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
     blocks.objects[object].add(blocks.boxes[k]);
 }
 
-// Four numbers at once, which the compiler computes on lanes.
+// Four numbers. The compiler turns loops over them into vector instructions.
 using Four = std::array<std::uint32_t, 4>;
 
-// Returns the lower 10 bits of each number, with two zeros before each bit.
+// Moves bit i of each number to bit 3 i, for i in 0 .. 9. All other bits of the result are 0.
 Four spread(Four x) {
   for (std::uint32_t& own : x) own = (own | own << 16) & 0x030000ff;
   for (std::uint32_t& own : x) own = (own | own << 8) & 0x0300f00f;
@@ -104,7 +104,7 @@ struct Coded {
   std::uint32_t code, triangle;
 };
 
-// Sorts by the lower `bits` bits of the codes; equal codes stay in their order.
+// Sorts by the lower `bits` bits of the codes (radix sort). Equal codes keep their order.
 void sort_by_code(UninitializedVector<Coded>& all, int bits) {
   constexpr int kDigit = 12;
   UninitializedVector<Coded> other(all.size());
@@ -118,10 +118,10 @@ void sort_by_code(UninitializedVector<Coded>& all, int bits) {
   }
 }
 
-// The cells of a grid over a box, and their places on a Morton curve.
+// A grid over a box. The Morton code of a cell is the position of the cell on a Morton curve.
 class MortonGrid {
  public:
-  // Cells are about half as wide as a block of a surface with this number of triangles.
+  // Makes cells about half as wide as a block of a smooth surface with this number of triangles.
   MortonGrid(const FloatBox& box, std::uint32_t triangles)
       : bits_(
             std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(triangles / 16.0))) + 1, 4, 10)),
@@ -132,10 +132,10 @@ class MortonGrid {
     scale_ = most_ / size;
   }
   int bits() const { return 3 * bits_; }
-  // Returns the code of the cell that contains the box's lower corner.
+  // Returns the Morton code of the cell with the lower corner of `box`.
   std::uint32_t code(const FloatBox& box) const {
     std::array<float, 4> at;
-    // Halves the numbers, because the difference may be infinite.
+    // Halves the numbers first, because their difference may overflow.
     for (std::size_t k = 0; k < 4; ++k) at[k] = (0.5f * box.lo[k] - 0.5f * lo_[k]) * scale_;
     for (float& own : at) own = std::min(std::max(own, 0.0f), most_);
     Four cell;
@@ -156,8 +156,8 @@ float longest_side(const FloatBox& box) {
   return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
-// Returns the usual length of a triangle's box: the median of the longest sides of a sample.
-// Returns infinity for an object that is not sampled.
+// Returns the usual length of a triangle's box: the median, over a sample, of the longest side.
+// Returns infinity for an object that is too small for a sample.
 float usual_side(const Scene& scene, const Object& object, double half, const Vec3& origin) {
   constexpr std::size_t kSample = 64;
   if (object.triangle_count < kLeastSampled) return kInfinite;
@@ -173,10 +173,10 @@ float usual_side(const Scene& scene, const Object& object, double half, const Ve
   return sides[kSample / 2];
 }
 
-// Orders the triangles of an object: first those that meet the region, then the others. Returns how
-// many meet the region. Sorts these by size class, and within a class by Morton code, so that a
-// large triangle does not enlarge a block of small triangles. Class c > 0 holds triangles whose
-// boxes are more than 8^c times as long as usual.
+// Orders the triangles of an object. First come the triangles whose boxes overlap the region, by
+// size class and then by Morton code. Returns their number. Size classes prevent a large triangle
+// from enlarging a block of small triangles. The size class is the number of k in 1 .. 3 for which
+// the triangle's box is more than 8^k times as long as usual.
 std::uint32_t order_object(const Scene& scene, const Object& object, double half,
                            const Vec3& origin, const FloatBox& region, unsigned threads,
                            std::span<std::uint32_t> order) {
@@ -224,7 +224,7 @@ std::uint32_t order_object(const Scene& scene, const Object& object, double half
   return static_cast<std::uint32_t>(inside[0].size());
 }
 
-// Puts all triangles of a stretched object in the order of spatial_order(). Returns their number.
+// Sorts all triangles of a stretched object by spatial_order(). Returns the number of triangles.
 std::uint32_t order_stretched(const Scene& scene, const Object& object,
                               std::span<std::uint32_t> order) {
   std::vector<Box> boxes(object.triangle_count);
@@ -266,7 +266,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
                       unsigned threads, TriangleBlocks& blocks) {
   const double half = half_of(clearance);
   Box all = Box::empty();
-  std::vector<std::uint32_t> scattered;  // scattered or stretched objects
+  std::vector<std::uint32_t> scattered;  // all scattered or stretched objects
   for (std::uint32_t o = 0; o < regions.size(); ++o) {
     if (regions[o].is_empty()) continue;
     all.add(blocks.objects[o]);
@@ -362,7 +362,7 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
     all.add(blocks.objects[o]);
   }
   mark_stretched(scene, half, blocks);
-  // Keeps the old origin if floats relative to it are nearly as fine as relative to the new middle.
+  // Keeps the old origin if it is close enough to the new middle, so that floats stay fine enough.
   if ((blocks.origin - middle(all)).cwiseAbs().maxCoeff() <= 4 * (all.hi - all.lo).maxCoeff())
     return;
   blocks.origin = middle(all);

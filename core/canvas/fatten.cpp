@@ -1,4 +1,4 @@
-// Clips triangles to the window and fattens them, in parallel. Keeps the order of the triangles.
+// Clips triangles to the view's region and fattens the clipped triangles, in parallel.
 #include "core/canvas/fatten.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-// The triangles that one thread fattens, and their drawables.
+// Fattens a consecutive part of the triangles in one thread. `out` holds the drawables.
 class Part {
  public:
   Part(const Fattener& fattener, const Drawables& waiting)
@@ -91,10 +91,10 @@ class Part {
 
   const Fattener& fattener_;
   const FattenBatch& batch_;
-  std::size_t fitted_ = 0;  // number of proxies that are elements already
+  std::size_t fitted_ = 0;  // number of elements of out.proxies that have a source
 };
 
-// Writes the drawables of all parts to `out`, in order, and reuses the memory of `out`.
+// Concatenates the drawables of all parts in `out`. Reuses the memory of `out`.
 void join(const std::vector<Part>& parts, std::size_t items, Drawables& out) {
   const std::size_t count = parts.size();
   std::vector<std::size_t> element(count + 1), item(count + 1), fitted(count + 1);

@@ -8,19 +8,19 @@
 namespace farcull {
 namespace {
 
-// Measured (docs/results/clusters.md, "Clusters"): at 10,000 triangles a level of clusters costs
-// more than it saves. At 100,000 triangles it pays. A second level of larger clusters does not pay.
+// Measured (docs/results/clusters.md, "Clusters"): for 10,000 triangles, a level of clusters costs
+// more time than it saves. For 100,000 triangles, one level saves time, a second level does not.
 constexpr std::uint32_t kClusterSize = 32;
 constexpr std::size_t kClusterLeast = 32768;
 
-constexpr int kCellBits = 20;  // of each coordinate: 3 * 20 bits fill one 64-bit code
+constexpr int kCellBits = 20;  // bits per coordinate: 3 * 20 bits fit into a 64-bit code
 
-// Returns the index of the cell of x in [lo, hi]. Halves the numbers, since hi - lo may overflow.
+// Returns the index of the grid cell of x in [lo, hi]. Uses halves, because hi - lo may overflow.
 std::uint64_t cell(double x, double lo, double hi) {
   const double span = 0.5 * hi - 0.5 * lo;
   const double at = (0.5 * x - 0.5 * lo) / span;
   constexpr double kCells = 1 << kCellBits;
-  if (!(at > 0)) return 0;  // also catches NaN, if lo == hi
+  if (!(at > 0)) return 0;  // also if `at` is NaN, because lo == hi
   return static_cast<std::uint64_t>(std::min(at * kCells, kCells - 1));
 }
 

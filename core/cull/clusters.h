@@ -1,4 +1,4 @@
-// Clusters of triangles for the level between objects and triangles (core/cull/cull.h).
+// Clusters of triangles, tested after whole objects and before triangles (core/cull/cull.h).
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,29 @@
 
 namespace farcull {
 
-/// The levels between objects and triangles. A cluster has up to `size` triangles of one owner, in
-/// the order of a space-filling curve. One query tests all triangles of a cluster that are not
-/// culled yet. Each element of `sizes` is a level, in this order. These levels run only on the
-/// first visit of a view. They do not change the fixed point of the rounds.
+/// The levels between objects and triangles, in the order in which they run. At a level, one query
+/// tests the live triangles of a cluster. A cluster has at most the given number of triangles, all
+/// of one owner and consecutive on a space-filling curve. These levels run only in the first round.
+/// They do not change the fixed point of the rounds.
 struct Clusters {
-  std::vector<std::uint32_t> sizes;  // triangles per cluster, each 2 or more
+  std::vector<std::uint32_t> sizes;  // per level: triangles in a cluster (2 or more)
   Reason reason = Reason::none;      // the reason in the trace; none: no entry in the trace
-  std::uint64_t n = 0, m = 0;        // numbers n and m of the reason
+  std::uint64_t n = 0, m = 0;        // Stage::n and Stage::m for the reason
 };
 
 /// Returns clusters of 32 triangles if occlusion queries are used and more than 32,768 triangles
 /// may take part. Else returns no clusters.
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
 
-/// Sorts `triangles` (given in any order) by owner, then along a Morton curve by the centres of
-/// their boxes, in the box of the owner, then by index. owner, boxes: per triangle of the scene.
+/// Sorts `triangles` by owner, then by the Morton code of the centre of the triangle's box, then by
+/// index. The Morton curve fills the box of the owner. owner, boxes: per triangle of the scene.
 std::vector<std::uint32_t> spatial_order(std::span<const std::uint32_t> triangles,
                                          std::span<const std::uint32_t> owner,
                                          std::span<const Box> boxes);
 
-/// Returns the cluster number of each triangle of the scene. Each owner's triangles in `order` are
-/// cut into clusters of `size`; the last cluster of an owner may be smaller. Numbers ascend along
-/// the order. Triangles that are not in `order` have number 0.
+/// Returns the cluster number of each triangle of the scene. Cuts the triangles of each owner, in
+/// the order of `order`, into clusters of `size` triangles. The last cluster of an owner may be
+/// smaller. Cluster numbers ascend along `order`. Triangles outside `order` have number 0.
 std::vector<std::uint32_t> cluster_numbers(std::span<const std::uint32_t> order,
                                            std::span<const std::uint32_t> owner,
                                            std::uint32_t size);

@@ -1,5 +1,5 @@
-// The schedule: a round visits views, a visit runs levels, a level runs two passes. Class Culling
-// holds the state of a run and defines the steps; cull_by() calls the steps in order.
+// The schedule of culling: a round visits views, a visit runs levels, and a level runs two passes.
+// Class Culling holds the state of a run and defines the steps. cull_by() calls the steps in order.
 #include "core/cull/cull.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
-  // Beyond kMaxRadius floats overflow in the kernels, and fragments are lost.
+  // With a radius above kMaxRadius, floats could overflow in the kernels and lose fragments.
   if (!(radius >= 0 && radius <= kMaxRadius)) {
     throw Error("{radius}", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
                 "choose a smaller factor");
@@ -23,8 +23,8 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   return radius;
 }
 
-// Returns the owner of each triangle: the given owner if there is one, else the object. A triangle
-// of an object that is tested against itself is its own owner.
+// Returns the owner of each triangle: settings.owners if given, else the object. With
+// settings.self, each triangle of an object that is tested against itself is its own owner.
 std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settings) {
   if (!settings.owners.empty()) return settings.owners;
   if (!settings.self) return owners(scene);
@@ -41,13 +41,13 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
   return out;
 }
 
-// A view of the run, and the state after its last visit.
+// A view of the run, and the state of the run after the last visit of the view.
 struct ViewState {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // The stored_version() of the first and of the second pass at triangle level, when that pass last
-  // ran in this view. While stored_version() is the same, the stored set is unchanged.
+  // stored_version() of the first and the second pass, from the last time when the pass ran at
+  // triangle level in this view. An equal stored_version() means an unchanged stored set.
   std::uint64_t stored[2] = {0, 0};
-  PassCost plain;  // cost of plain CULLIDE's two passes at triangle level on the live triangles
+  PassCost plain;  // cost of both passes of plain CULLIDE at triangle level
 };
 
 bool has_own_owners(const Scene& scene, const CullSettings& settings) {
@@ -55,7 +55,7 @@ bool has_own_owners(const Scene& scene, const CullSettings& settings) {
                                       [](const Object& object) { return object.self; });
 }
 
-// True if objects are the owners, so that one query can ask for a whole object.
+// True if objects are the owners, so that one query can test a whole object.
 bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
   return settings.owners.empty() && !has_own_owners(scene, settings);
 }
@@ -64,7 +64,7 @@ bool has_object_level(const Scene& scene, const CullSettings& settings) {
   return (settings.object_level || settings.objects_alone) && owned_by_objects(scene, settings);
 }
 
-// Returns a state for each view. Its window is empty if doubles cannot resolve the view's pixels.
+// Returns the initial states of the views. A view without a window cannot be drawn.
 std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings& settings) {
   std::vector<ViewState> places;
   for (const View& view : settings.views) {
@@ -75,7 +75,7 @@ std::vector<ViewState> view_states_of(const Regions& regions, const CullSettings
   return places;
 }
 
-// Stages that do not depend on pixels: views that cannot be drawn, the object level, and clusters.
+// Returns the stages known before drawing: views without a window, the object level, and clusters.
 std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
                                   const CullSettings& settings,
                                   const std::vector<ViewState>& places, std::size_t live) {
@@ -113,7 +113,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
   return stages;
 }
 
-// The steps of one run; cull_by() puts them in order.
+// The steps of one run. cull_by() calls these steps in order.
 class Culling {
  public:
   Culling(const PassRule& rule, const Scene& scene, const Regions& regions,
@@ -167,10 +167,10 @@ class Culling {
     agreed_.assign(state_.bits.size(), kCulled);
   }
 
-  // Sets the bits that all visits of the round have set.
+  // With ClearRule::all, sets the bits that all visits of the round have set.
   void end_round() {
     if (settings_.clear == ClearRule::any || state_.live.empty()) return;
-    if (places_.empty()) return;  // without a view, no view has cleared anything
+    if (places_.empty()) return;  // without views, no bit may be set
     Stage stage = begin({.kind = StageKind::agreement,
                          .round = round_,
                          .depends = round_ > 1,
@@ -186,12 +186,12 @@ class Culling {
     end_at_few_or_little();
   }
 
-  // True if another round follows. A round that changed nothing is the last. If this round changed
-  // something and no round follows, adds a stage that gives the reason.
+  // True if another round follows. A round that changed nothing is the last round. If a round that
+  // changed something is the last round, adds a stage with the reason.
   bool round_changed() {
     const bool ended = done_ || changes() == before_round_;
     const bool last = round_ == settings_.rounds;
-    // Pixels do not decide whether round 1 is the last.
+    // If `rounds` is 1, round 1 is always the last round, so its stage does not depend on pixels.
     if (last && (!ended || round_ == 1)) {
       leave_out({.kind = StageKind::further_rounds,
                  .reason = Reason::rounds_given,
@@ -205,7 +205,7 @@ class Culling {
     return false;
   }
 
-  // True if this visit is left out. Adds a stage with the reason, if no stage gives it yet.
+  // True if the visit of this view is skipped. Adds a stage with the reason if there is none yet.
   bool leaves_out(std::size_t view) {
     ViewState& place = places_[view];
     view_ = settings_.views[view].name;
@@ -238,9 +238,9 @@ class Culling {
     items_ = VisitItems(state_);
     FattenCounts counts;
     const ViewReport& report = result_.views[view];
-    // If a step draws many proxies, these are not fitted here: the canvas later fits the undecided
-    // proxies together. A proxy covers each pixel centre that lies deeper inside the proxy than the
-    // rounding error of its corners (lemma 21).
+    // If owners have many triangles, most proxies are not made here. The canvas later makes only
+    // the proxies that it needs, many at a time. `reach`: a proxy covers all pixel centres closer
+    // than this to a corner of its triangle, in spite of rounding errors (lemma 21).
     constexpr std::size_t kLeastOfOwner = 16;
     std::optional<double> reach;
     if (canvas_.fits_proxies() &&
@@ -291,7 +291,7 @@ class Culling {
       end_at_few_or_little();
       return;
     }
-    // In plain CULLIDE, a view clears a triangle in both passes or not at all.
+    // In plain CULLIDE, the bits of a triangle count only if the visit set both.
     for (const std::uint32_t t : start_.live) {
       const std::uint8_t bits = state_.bits[t];
       agreed_[t] &= rule_.clears && bits != kCulled ? 0 : bits;
@@ -322,11 +322,11 @@ class Culling {
     return report;
   }
 
-  // The clusters of a run are fixed, so a cluster never gains triangles to ask for.
+  // Makes the clusters of all levels. They stay the same for the whole run.
   void arrange_clusters() {
     if (own_owners_ || settings_.clusters.sizes.empty()) return;
     state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);
-    groups_.reserve(settings_.clusters.sizes.size());  // clusters_ has pointers into groups_
+    groups_.reserve(settings_.clusters.sizes.size());  // keeps the pointers in clusters_ valid
     for (const std::uint32_t size : settings_.clusters.sizes) {
       groups_.push_back(cluster_numbers(state_.live, state_.owner, size));
       clusters_.push_back({size, &groups_.back()});
@@ -337,10 +337,10 @@ class Culling {
     return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
   }
 
-  // Returns a number that changes if the set changes that the pass for `bit` stores.
+  // Returns a number that increases whenever the set stored by the pass for `bit` changes.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
-  // True if the pass has to run. A pass is left out only if bits are kept across views and the set
-  // that it stores is unchanged since it last ran in this view.
+  // True if the pass for `bit` has to run. A pass can be skipped if bits are kept across views and
+  // the stored set has not changed since the pass last ran in this view.
   bool due(const ViewState& place, Bit bit) const {
     return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
            settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
@@ -393,7 +393,7 @@ class Culling {
                      .queries_saved = saved_.queries});
   }
 
-  // A stage of the current visit.
+  // Returns a new stage for the current visit.
   Stage of_visit(StageKind kind, Reason reason) const {
     return {.kind = kind, .subject = view_, .round = round_, .depends = true, .reason = reason};
   }
@@ -424,7 +424,7 @@ class Culling {
   CullResult result_;
   CullState state_;
   bool own_owners_ = false;                         // some triangle is its own owner
-  std::vector<std::vector<std::uint32_t>> groups_;  // cluster numbers, per size and triangle
+  std::vector<std::vector<std::uint32_t>> groups_;  // per cluster level and triangle: its cluster
   Level objects_{kObjectLevel, &state_.owner};
   std::vector<Level> clusters_;
   Level triangles_{kTriangleLevel};
@@ -432,15 +432,15 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0;
-  std::uint64_t live_before_ = 0;     // live triangles before the visit (ClearRule::all: the round)
+  std::uint64_t live_before_ = 0;     // number of live triangles before this visit (or round)
   CullState start_;                   // for ClearRule::all: the state when the round began
   std::vector<std::uint8_t> agreed_;  // for ClearRule::all: bits that every visit of the round set
-  bool done_ = false;                 // few triangles are left, or the last view culled little
-  bool visited_ = false;              // a view was visited
+  bool done_ = false;                 // few triangles are left, or few were culled last
+  bool visited_ = false;              // a visit has ended
   bool first_level_ = true;           // no level has run yet
   PassCost used_, saved_;
 
-  // The state of the visit in progress.
+  // The state of the current visit.
   std::string view_;
   ViewState* place_ = nullptr;
   VisitItems items_;

@@ -1,4 +1,4 @@
-// Builds a pass from the state of a run, runs the pass on the canvas, and turns answers into bits.
+// Builds a pass from the state of a run, runs the pass on the canvas, and sets bits by the results.
 #include "core/cull/pass.h"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 namespace farcull {
 namespace {
 
-// Calls visit(from, to) for the items from .. to - 1 of each owner. Owners ascend in the pass for F
-// and descend in the pass for L. ask: the bit of the pass.
+// Calls visit(from, to) for the items from .. to - 1 of each owner. ask: the bit that the pass may
+// set. Owners ascend in the pass for F and descend in the pass for L.
 template <class Visit>
 void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
   const std::vector<std::uint32_t>& begin = items.owner_begin;
@@ -20,7 +20,7 @@ void for_owners(const VisitItems& items, Bit ask, const Visit& visit) {
   }
 }
 
-// The state that determines which items a pass asks and stores.
+// The input of a pass: determines which items the pass asks and stores.
 struct PassQuestion {
   const CullState& state;
   const VisitItems& visit;
@@ -41,7 +41,7 @@ struct PassQuestion {
   }
 };
 
-// Builds one pass.
+// Builds one pass and keeps which items belong to each slot.
 class PassBuilder {
  public:
   explicit PassBuilder(const PassQuestion& of) : of_(of) {
@@ -51,7 +51,7 @@ class PassBuilder {
     for_owners(of.visit, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
       const bool last = of.ask == kF ? to == of.visit.items.size() : from == 0;
-      if (!last) store_owner(from, to);  // no query would read the last store
+      if (!last) store_owner(from, to);  // no query follows the last owner
     });
     while (!pass_.steps.empty() && pass_.steps.back().verb == Verb::store) {
       pass_.draws.resize(pass_.steps.back().first);
@@ -64,7 +64,7 @@ class PassBuilder {
   Pass& pass() { return pass_; }
   PassCost cost() const { return {pass_.draws.size(), pass_.slots}; }
 
-  // Calls clear(item) for all asked items that the pass did not see.
+  // Calls clear(item) for all asked items that are not seen. seen: the result of Canvas::run().
   template <class Clear>
   void for_unseen(const std::vector<std::uint8_t>& seen, const Clear& clear) const {
     for (const std::uint32_t item : undrawn_) clear(item);
@@ -128,10 +128,10 @@ class PassBuilder {
   }
 
   const PassQuestion& of_;
-  bool grouped_ = false;                   // false: a slot is one item
-  std::vector<std::uint32_t> undrawn_;     // items that get the bit without being drawn
-  std::vector<std::uint32_t> asked_;       // items that are drawn and asked, slot after slot
-  std::vector<std::uint32_t> slot_begin_;  // per slot: its first index in asked_, if grouped
+  bool grouped_ = false;                   // false: each slot has one item
+  std::vector<std::uint32_t> undrawn_;     // asked items that get the bit without being drawn
+  std::vector<std::uint32_t> asked_;       // asked items that are drawn, in the order of slots
+  std::vector<std::uint32_t> slot_begin_;  // if grouped: per slot, its first index in asked_
   bool anything_stored_ = false;
   Pass pass_;
 };
@@ -199,7 +199,7 @@ PassCost run_pass(CullState& state, VisitItems& items, const Drawables& drawable
   return builder.cost();
 }
 
-// Counts the cost as PassBuilder does for plain CULLIDE, but makes no lists.
+// Returns the same cost as a PassBuilder with kPlainRule, but makes no lists.
 PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawables& drawables,
                     Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};
@@ -224,7 +224,7 @@ PassCost plain_cost(const CullState& state, const VisitItems& items, const Drawa
       drawn += open.elements;
       if (open.elements > 0) cost.draws = drawn;
     }
-    // Plain CULLIDE stores the triangles that it asks.
+    // Plain CULLIDE stores every triangle that it asks, and undrawable triangles.
     drawn += open.elements + open.undrawable;
     anything_stored = anything_stored || open.elements + open.undrawable > 0;
   });

@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 // Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
-// which drawing keeps. Larger patches leave more pairs to boxes. If boxes separate triangles
-// poorly, a sixteenth of the object leaves the fewest candidates. Below kLeastPatch, nearly all
-// triangles are at borders. Above kMostPatch, too many pairs of a patch may be left to test.
+// which drawing cannot cull. Larger patches leave more pairs to box tests. If boxes separate
+// triangles poorly, patches of a sixteenth of the object leave the fewest candidate pairs. Below
+// kLeastPatch, nearly all triangles are at borders. Above kMostPatch, a patch has too many pairs.
 constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;
 
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> triangles_of_marked(const Scene& scene) {
 
 namespace {
 
-// Returns for each object how many triangles of the ascending list belong to it.
+// Returns for each object the number of its triangles in the list. Precondition: `list` ascends.
 std::vector<std::uint32_t> counts_in(const Scene& scene, std::span<const std::uint32_t> list) {
   std::vector<std::uint32_t> counts;
   auto at = list.begin();
@@ -64,8 +64,8 @@ Patches cut_patches(const Scene& scene, std::span<const Box> boxes,
   Patches out{.size = size, .owner = std::vector<std::uint32_t>(scene.triangles.size())};
   const std::vector<std::uint32_t> order = spatial_order(marked, owners(scene), boxes);
   const std::vector<std::uint32_t> counts = counts_in(scene, marked);
-  std::uint32_t next = 0;  // the next owner
-  std::size_t at = 0;      // index in `order`, where objects ascend
+  std::uint32_t next = 0;  // the next unused owner number
+  std::size_t at = 0;      // index of the next triangle in `order`
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
     std::fill_n(out.owner.begin() + object.first_triangle, object.triangle_count, next);
@@ -88,12 +88,12 @@ std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> 
   const auto owner = [&](std::uint32_t t) { return patches.owner[t]; };
   std::vector<TrianglePair> pairs = box_join(boxes, patches.owner, live);
   if (!bits.empty()) remove_cleared(bits, patches.owner, pairs);
-  // The triangles of marked objects, patch after patch.
+  // The triangles of marked objects, sorted by patch.
   std::vector<std::uint32_t> members = triangles_of_marked(scene);
   std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(owner(a), a) < std::pair(owner(b), b);
   });
-  std::vector<std::uint32_t> alone(scene.triangles.size());  // each triangle its own owner
+  std::vector<std::uint32_t> alone(scene.triangles.size());  // each triangle is its own owner
   std::iota(alone.begin(), alone.end(), 0u);
   for (std::size_t from = 0, to = 0; from < members.size(); from = to) {
     while (to < members.size() && owner(members[to]) == owner(members[from])) ++to;

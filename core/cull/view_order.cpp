@@ -1,5 +1,5 @@
-// Runs Quick-CULLIDE on a sample of the triangles, each drawn as one point. Pixels are so large
-// that the points of a surface leave few of its pixels empty.
+// Orders views by running Quick-CULLIDE on a sample of the triangles, each drawn as one point. The
+// pixels are so large that the points of a surface leave few pixels of the surface empty.
 #include "core/cull/view_order.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Sample {
   Vec3 centre;
 };
 
-// Returns every k-th triangle of the regions, in the order of owners.
+// Returns a sample of the triangles of the regions, sorted by owner.
 std::vector<Sample> sample(const Scene& scene, const Regions& regions,
                            std::span<const std::uint32_t> owner) {
   const std::size_t step = (regions.triangles.size() + kMostSamples - 1) / kMostSamples;
@@ -34,7 +34,7 @@ std::vector<Sample> sample(const Scene& scene, const Regions& regions,
   return out;
 }
 
-// Sets the bits that both passes of a view set. Returns the number of samples that are then culled.
+// Runs both passes of a view and sets bits. Returns the number of samples that now have both bits.
 std::ptrdiff_t draw(const Window& window, std::span<const Sample> samples,
                     std::vector<std::uint8_t>& bits) {
   const std::size_t n = samples.size();

@@ -1,4 +1,4 @@
-// The order in which a run visits its views.
+// Chooses the order in which a run visits its views.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace farcull {
 
-/// Returns the views in another order: each view is the one that should cull most of the triangles
-/// that the views before it leave. The numbers are estimates from a sample of the triangles of
-/// `regions`, so any order is reliable. The result depends on the arguments alone, and is the same
-/// on every machine. owner: per triangle of the scene.
+/// Returns the views in greedy order: of the remaining views, the next view is the one that should
+/// cull the most triangles. Estimates these numbers from a sample of the triangles of `regions`.
+/// The order affects speed, but no order loses a collision. The result is the same on every
+/// machine. owner: per triangle of the scene.
 std::vector<View> order_views(const Scene& scene, const Regions& regions,
                               std::span<const std::uint32_t> owner, std::vector<View> views);
 

@@ -1,6 +1,6 @@
-// Without OpenGL (-DFARCULL_GL=OFF), this file replaces all other files of core/gl except
-// picture/window.cpp. GlContext's constructor throws Error. Functions that take a GlContext cannot
-// be reached; they exist for the linker.
+// Stubs for a build without OpenGL (-DFARCULL_GL=OFF). Replaces all other files of core/gl except
+// picture/window.cpp. The constructor of GlContext throws Error, so functions that take a GlContext
+// are never called. They exist only for the linker.
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"

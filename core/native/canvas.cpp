@@ -1,5 +1,5 @@
-// begin() finds the pixels that each element may cover. draw() divides the rows of the window so
-// that all threads draw about the same number of elements.
+// Implements the canvas on the CPU. begin() finds the pixels that each element may cover. draw()
+// divides the window's rows among threads, so that all draw about the same number of elements.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace farcull {
 namespace {
 
-constexpr int kMostPixels = 16380;    // px per side; window and border need 2^14 px
-constexpr std::size_t kLeast = 2048;  // draws per thread; with fewer, a thread does not pay
+constexpr int kMostPixels = 16380;    // px per side of the window; the border extends this to 2^14
+constexpr std::size_t kLeast = 2048;  // smallest number of draws that are worth a thread
 
 }  // namespace
 
@@ -55,8 +55,8 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
   const std::size_t count = drawables.elements(), unknown = waiting ? 0 : count;
   ranges_.resize(proxies ? 0 : count);
   outlines_.resize(proxies ? unknown : 0);
-  // reach (px): snapping displaces a corner by at most 2^-9, less than 2^-8. The square of a pixel
-  // extends 0.5 px from its centre.
+  // reach (px): pixel centres within this distance of a triangle may be covered. Snapping moves a
+  // corner by at most 2^-9. A pixel's square extends 0.5 px from the centre.
   const double reach = options_.conservative ? 0x1p-8 + 0.5 : 0x1p-8;
   for_chunks(unknown, chunks_for(unknown, 4 * kLeast, options_.threads),
              [&](std::size_t, std::size_t from, std::size_t to) {
@@ -106,7 +106,7 @@ void NativeCanvas::draw(const NativeJob& job, const Pass& pass) {
   const std::size_t bands =
       std::min<std::size_t>(chunks_for(pass.draws.size(), kLeast, options_.threads),
                             static_cast<std::size_t>(job.height));
-  // Thread b begins at row border[b]. All threads have about the same number of elements.
+  // Thread b draws the rows border[b] .. border[b + 1] - 1.
   std::vector<int> border(bands + 1, job.height);
   border[0] = 0;
   for (std::size_t b = 1; b < bands; ++b) {

@@ -19,39 +19,36 @@
 namespace farcull {
 
 /// The depth buffer has this many extra columns and rows. A block of pixels may begin inside the
-/// window and end outside; it is read and written as a whole. Without extra columns, such a block
-/// would include pixels of the next row, which may belong to another thread.
+/// window and end outside. A block is read and written as a whole. Without extra columns, such a
+/// block would include pixels of the next row, which may belong to another thread.
 inline constexpr int kNativeOverhang = 8;
 
-/// run: draws a pass. values: returns depths in px: the nearest depth of each pixel for
-/// Verb::store, the farthest for Verb::ask. depths: returns the same depths as the depth buffer
-/// holds them.
+/// The output of a job. run: the slots that are seen in a pass. values: depths in px, the nearest
+/// of each pixel for Verb::store, the farthest for Verb::ask. depths: the same depths, as the depth
+/// buffer holds them (mapped and rounded).
 enum class NativeOutput : std::uint8_t { run, values, depths };
 
-/// What one thread draws: the steps of a pass, in order, in the rows [y0, y1) of a window.
+/// The work of one thread: it draws the steps of a pass, in order, in rows [y0, y1) of a window.
 struct NativeJob {
-  // The window.
   int width, height;  // px
   int stride;         // floats from row to row of the buffer; at least width + kNativeOverhang
   int y0, y1;
   float scale;        // scale of the depth map (depth_scale())
   bool fixed24;       // the buffer rounds depths to multiples of 1 / (2^24 - 1)
   bool conservative;  // triangles have a fragment in each pixel that they touch
-  // The elements.
   const Drawables* drawables;
-  const ProxyOutline* outlines;  // per proxy
-  const PixelRange* ranges;      // per triangle
-  // The pass.
+  const ProxyOutline* outlines;  // one per proxy
+  const PixelRange* ranges;      // one per triangle
   NativeOutput output;
   bool touching;
   const Step* steps;
   std::uint32_t step_count;
   const Draw* draws;
   float* depth;        // height + kNativeOverhang rows of stride floats
-  std::uint8_t* seen;  // per slot; all threads write to it, but only the value 1
+  std::uint8_t* seen;  // one per slot; threads only write 1, so their order is irrelevant
 };
 
-/// `count` lines in depth direction, for the kernel of one solid. cx, cy: px. hit: 0 or 1.
+/// `count` lines in depth direction at (cx, cy) px, and a kernel's results. hit: 0 or 1.
 struct NativeLines {
   const Solid* solid;
   std::uint32_t count;
@@ -110,17 +107,17 @@ class NativeCanvas final : public Canvas {
   RasterLimits limits_;
   Window window_;
   const Drawables* drawables_ = nullptr;  // the caller keeps them until the next begin()
-  std::vector<PixelRange> ranges_;        // per triangle
-  std::vector<ProxyOutline> outlines_;    // per proxy; empty if the drawables contain outlines
-  std::vector<std::uint64_t> work_;       // per row: number of elements whose middle row is lower
+  std::vector<PixelRange> ranges_;        // one per triangle
+  std::vector<ProxyOutline> outlines_;    // one per proxy; empty if the drawables contain outlines
+  std::vector<std::uint64_t> work_;       // work_[y]: number of elements with middle row < y
   int stride_ = 0;
   std::vector<float> depth_;
 };
 
-// Instruction sets that the native canvas can use on this processor (lanes.cpp).
+// The functions below list and select instruction sets for the canvas on the CPU (lanes.cpp).
 
-/// Returns the names of usable instruction sets, the best first, such as "AVX3", "AVX2", "SSE4",
-/// "SCALAR" or "EMU128". The last name means plain C++.
+/// Returns the names of usable instruction sets, the best first, such as "AVX3", "AVX2" or "SSE4".
+/// "SCALAR" and "EMU128" are plain C++.
 std::vector<std::string> lane_targets();
 std::string lane_target();
 /// Selects one of lane_targets() for all threads. An empty name selects the best. The results do

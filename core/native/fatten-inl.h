@@ -1,7 +1,7 @@
-// Fattens triangles inside the region, one on each lane. Triangles that need clipping are left out.
+// Fattens triangles (fits proxies to them), one per lane. Leaves out triangles that need clipping.
 // Fit, a template parameter, is a type with these functions on lanes (offsets/lanes.cpp):
-//   rectangle(p, radius, bound_x, bound_y, corners)
-//   solid(p, radius, numbers), depths(p, radius, nearest and farthest)
+//   rectangle(p, radius, bound_x, bound_y, corners): the corners of the proxy;
+//   solid(p, radius, numbers): its solid; depths(p, radius, depths): nearest and farthest depth.
 #if defined(FARCULL_NATIVE_FATTEN_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_FATTEN_INL_H_
 #undef FARCULL_NATIVE_FATTEN_INL_H_
@@ -71,8 +71,8 @@ HWY_INLINE void gather_corners(const Scene& scene, const std::uint32_t* items, i
 #endif
 }
 
-/// The images of kWide triangles. The operations and their order are the same as in to_pixel()
-/// (core/view/view.h).
+/// The images of kWide triangles in pixel space. The operations and their order are the same as in
+/// to_pixel() (core/view/view.h).
 struct WidePixels {
   dvec3 p[3];
   WideLane error = 0.0;  // px; largest error of a corner
@@ -137,7 +137,7 @@ struct WideOutlines {
                              out.x >= 0.0 && out.y >= 0.0 && out.x < half_x + half_x &&
                              out.y < half_y + half_y;
     out.x = select(covered, out.x, static_cast<double>(kNoPixel));
-    // Rounding errs by at most 2^-53 of the value in double, and 2^-24 in float. The subtracted
+    // The relative rounding error is at most 2^-53 in double and 2^-24 in float. The subtracted
     // term is larger, so out.depth is certainly less than the depth of the corner.
     out.depth = farcull::HWY_NAMESPACE::nearest(
         corner.z - (abs(corner.z) * WideLane(0x1p-23) + WideLane(0x1p-140)));
@@ -162,7 +162,7 @@ HWY_INLINE void store_outlines(const WideOutlines& of, int lanes, ProxyOutline* 
   HWY_ALIGN float depths[3][kWide];
   const WideLane* const pixel_of[6] = {&of.x0, &of.x1, &of.y0, &of.y1, &of.x, &of.y};
   for (int i = 0; i < 6; ++i) {
-    // Numbers that do not fit into 16 bits become 0. Such numbers occur only outside the region.
+    // Numbers that do not fit into 16 bits become 0. Only triangles outside the region give them.
     const WideLane a = *pixel_of[i];
     const WideLane fitting = select(a >= 0.0 && a <= WideLane(65535.0), a, 0.0);
     hn::Store(hn::DemoteTo(whole, fitting.v), whole, pixels[i]);

@@ -1,8 +1,8 @@
-// Lets a kernel file (*.glsl) compile for the lanes of a vector processor. `float` is then defined
-// as Lane, a vector of floats with one pixel on each lane. Every operation rounds once on each
-// lane, as in core/base/glsl_shim.h, so the bits are the same. Google Highway compiles this file
-// once for each instruction set (hwy/foreach_target.h). Include a kernel between `#define float
-// Lane` and `#undef float`, as in offsets/lanes.cpp.
+// Lets a kernel file (*.glsl) compile as C++ for SIMD. The macro `float` then means Lane, a vector
+// of floats with one pixel per lane. Every operation rounds once per lane, as in
+// core/base/glsl_shim.h, so the bits are the same. Google Highway compiles this file once for each
+// instruction set (hwy/foreach_target.h). Include a kernel between `#define float Lane` and `#undef
+// float`, as in offsets/lanes.cpp.
 #if defined(FARCULL_NATIVE_GLSL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_GLSL_LANES_INL_H_
 #undef FARCULL_NATIVE_GLSL_LANES_INL_H_
@@ -17,7 +17,7 @@ namespace farcull::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A vector of truth values, one on each lane of the Highway tag D.
+/// A SIMD vector of truth values, one per lane. D: Highway's tag for the vector type.
 template <class D>
 struct BoolOf {
   BoolOf() = default;
@@ -33,7 +33,7 @@ struct BoolOf {
   friend HWY_INLINE BoolOf operator!(BoolOf a) { return BoolOf(hn::Not(a.mask)); }
 };
 
-/// A vector of numbers, one on each lane of the Highway tag D.
+/// A SIMD vector of numbers, one per lane. D: Highway's tag for the vector type.
 template <class D>
 struct LaneOf {
   LaneOf() = default;
@@ -110,7 +110,7 @@ struct dvec3 {
 }  // namespace farcull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-// The macros of kernels, for lanes. core/base/glsl_shim.h defines the same names for scalars.
+// Defines the macros of kernels for lanes. core/base/glsl_shim.h defines them for scalars.
 #undef FAR_OUT
 #undef FAR_INOUT
 #undef FAR_PRECISE

@@ -1,4 +1,4 @@
-// Selects the entry of Highway's function table, which has one entry for each instruction set.
+// Lists the usable instruction sets, and selects the set that Highway's dispatch calls.
 #include "core/native/canvas.h"
 
 #include <hwy/highway.h>

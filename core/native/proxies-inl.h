@@ -31,8 +31,8 @@ constexpr int kBlockHeight = kLanes / kBlockWidth;
 static_assert(kLanes == 1 || kLanes % 4 == 0);
 static_assert(kBlockWidth <= kNativeOverhang && kBlockHeight <= kNativeOverhang);
 
-/// load_rows() and store_rows() access a block: kBlockHeight rows of kBlockWidth floats. Only its
-/// first `rows` rows belong to this thread. In place of other rows, a row of this thread is loaded.
+/// load_rows() and store_rows() access a block of kBlockWidth columns. Only its first `rows` rows
+/// belong to this thread. The other rows are not stored; one of the first rows is loaded for them.
 #if HWY_TARGET == HWY_SCALAR
 template <int kCount>
 HWY_INLINE LaneVector load_rows(const float* at, int, int) {
@@ -49,7 +49,7 @@ HWY_INLINE hn::Vec<hn::CappedTag<float, kCount> > load_rows(const float* at, int
   if constexpr (kCount <= 4) {
     return hn::LoadU(tag, at);
   } else {
-    constexpr int kHalf = kCount / 8;  // number of rows
+    constexpr int kHalf = kCount / 8;  // number of rows in each half
     const float* const upper = rows > kHalf ? at + kHalf * stride : at;
     return hn::Combine(tag, load_rows<kCount / 2>(upper, stride, rows - kHalf),
                        load_rows<kCount / 2>(at, stride, rows));
@@ -70,7 +70,7 @@ HWY_INLINE void store_rows(hn::Vec<hn::CappedTag<float, kCount> > v, float* at, 
 }
 #endif
 
-/// Column and row of each lane inside a block.
+/// Return the column and the row of each lane's pixel inside a block.
 HWY_INLINE Lane lane_columns() {
   HWY_ALIGN static constexpr float kColumns[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   return Lane(hn::Load(LaneTag(), kColumns));
@@ -85,7 +85,7 @@ HWY_INLINE Lane lane_numbers() {
                                                    8, 9, 10, 11, 12, 13, 14, 15};
   return Lane(hn::Load(LaneTag(), kNumbers));
 }
-/// Returns the truth value of lane i as bit i.
+/// Returns an integer whose bit i is the truth value of lane i.
 HWY_INLINE std::uint32_t bits_of(Bool c) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(LaneTag(), c.mask, bytes);
@@ -127,7 +127,7 @@ HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, La
   return false;
 }
 
-/// Draws depth 0, the nearest, in all pixels of the job's rows. Returns true if this is a
+/// Draws the quad kEverywhere at depth 0, the nearest, in the job's rows. Returns true if this is a
 /// visibility test (Verb::ask in NativeOutput::run) and a fragment is seen.
 inline bool take_everywhere(const NativeJob& job, Verb verb) {
   bool seen = false;
@@ -180,9 +180,9 @@ struct ProxyEdges {
       dy[i] = turn * (y[(i + 1) % 4] - y[i]);
     }
   }
-  /// Tests kLanes adjacent blocks. True: the block may have a covered pixel. cx, cy: the lower left
-  /// pixel centre of the first block. The test enlarges each block by a pixel on each side.
-  /// Rounding errors are far smaller than a pixel, so no block with a covered pixel is rejected.
+  /// Tests kLanes blocks side by side, one per lane. True: the block may have a covered pixel. cx,
+  /// cy: lower left pixel centre of the first block. Each block is enlarged by a pixel on each
+  /// side. Rounding errors are far smaller, so no block with a covered pixel is rejected.
   HWY_INLINE Bool may_cover_blocks(Plain cx, Plain cy) const {
     const Lane left = Lane(cx - 1) + Lane(static_cast<Plain>(kBlockWidth)) * lane_numbers();
     const Lane right = left + Lane(static_cast<Plain>(kBlockWidth + 1));
@@ -214,8 +214,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   const Solid& s = proxy.solid;
   const ProxyEdges edges(proxy.corners);
   const bool passes = job.output == NativeOutput::run;
-  // The mapped depth of the solid's nearest entry (store) or farthest exit (ask). Where a fragment
-  // at this depth would have no effect, no fragment has one, since the depth map is monotone.
+  // Buffer value of the solid's nearest entry (store) or farthest exit (ask). If this value has no
+  // effect in a pixel, no fragment of the proxy has an effect there: the depth map is monotone.
   const Lane bound = held_depth(
       job, mapped_depth(job, verb == Verb::store ? Kernel::nearest(s) : Kernel::farthest(s)));
   const Plain half_width = 0.5f * static_cast<Plain>(job.width);
@@ -232,8 +232,8 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
       covered = covered && (verb == Verb::store ? bound < old : bound >= old);
     }
     if (!any(covered)) return false;
-    // Loads the solid late, because its twenty vectors fill all registers. Most blocks return above
-    // and do not need the solid.
+    // Loads the solid only here, because its twenty vectors occupy many registers. For most
+    // blocks, draw_block() has returned before.
     Lane entry, exit;
     covered = covered && Kernel::interval({cx, cy}, uniform(s[0]), uniform(s[1]), uniform(s[2]),
                                           uniform(s[3]), uniform(s[4]), entry, exit);
@@ -259,9 +259,9 @@ HWY_INLINE bool draw_proxy(const NativeJob& job, const Proxy& proxy, const Pixel
   return false;
 }
 
-// The outlines decide most proxies. The other proxies are fitted and drawn in groups.
+// Most outlines show that a proxy is seen or has no effect. Other proxies are drawn in groups.
 
-/// Returns true if the proxy is certainly seen, in the pixel that its outline names.
+/// Returns true if the outline's pixel (x, y) shows that the proxy is seen.
 HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline) {
   if (outline.x == kNoPixel || outline.y < job.y0 || outline.y >= job.y1) return false;
   Plain depth = std::min(std::max(0.5f + outline.depth * job.scale, 0.25f), 0.75f);
@@ -270,9 +270,9 @@ HWY_INLINE bool seen_for_sure(const NativeJob& job, const ProxyOutline& outline)
   return job.touching ? depth >= old : depth > old;
 }
 
-/// Calls visit(at, rows, columns) for the blocks of `range` in the job's rows, until a call returns
-/// true. Returns true if there was such a call. at: index of the block's first pixel in job.depth.
-/// rows, columns: number of rows and columns from that pixel to the end of the range.
+/// Calls visit(at, rows, columns) for the blocks of `range` in the job's rows. Stops and returns
+/// true when a call returns true. at: index of the block's first pixel in job.depth. rows, columns:
+/// number of rows and columns from this pixel to the end of the range.
 template <class Visit>
 HWY_INLINE bool any_block(const NativeJob& job, const PixelRange& range, const Visit& visit) {
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
@@ -289,14 +289,14 @@ HWY_INLINE Bool inside_block(int rows, int columns) {
 }
 /// Returns true if the proxy is so small that may_change() examines the blocks of its range.
 HWY_INLINE bool is_small(const PixelRange& range) {
-  constexpr int kMostBlocks = 4;  // in a row and in a column
+  constexpr int kMostBlocks = 4;  // largest number of blocks in a row and in a column
   return range.x1 - range.x0 <= kMostBlocks * kBlockWidth &&
          range.y1 - range.y0 <= kMostBlocks * kBlockHeight;
 }
 
-/// Returns false if drawing the proxy has no effect. For Verb::store, its nearest depth then
-/// changes no pixel of its range. For Verb::ask, its farthest depth is then seen in no pixel of its
-/// range.
+/// Returns false only if drawing the proxy has no effect. store: even the proxy's nearest depth
+/// changes no pixel of its range. ask: even its farthest depth is seen in no pixel of its range.
+/// Returns true for large proxies.
 HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Verb verb) {
   if (!is_small(outline.range)) return true;
   const Lane bound = held_depth(
@@ -308,7 +308,7 @@ HWY_INLINE bool may_change(const NativeJob& job, const ProxyOutline& outline, Ve
   });
 }
 
-/// Collects the proxies of one step that their outlines did not decide, and draws them.
+/// Collects the proxies of one step that need drawing, and draws them in groups of kMost.
 template <class Kernel>
 class WaitingProxies {
  public:
@@ -364,12 +364,12 @@ class WaitingProxies {
   int count_ = 0;
 };
 
-/// A few consecutive draws, usually of neighbouring triangles of a mesh.
+/// A run: consecutive draws, usually of neighbouring triangles of a mesh. first: index of a draw.
 struct DrawRun {
   std::uint32_t first, count;
 };
-/// Prefetches data of the next three runs, since sorted runs are scattered in memory. Successive
-/// calls prefetch first the draws of a run, then the draws' outlines, then the draws' triangles.
+/// Prefetches data of the next three runs, which are scattered in memory. A run's draws are
+/// prefetched first, its outlines at the next call, and its triangles at the call after that.
 HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& runs,
                               std::size_t now) {
   const Drawables& from = *job.drawables;
@@ -391,9 +391,9 @@ HWY_INLINE void prefetch_runs(const NativeJob& job, const std::vector<DrawRun>& 
       hwy::Prefetch(&from.batch.scene->triangles[from.sources[element]]);
   });
 }
-/// Divides the draws of a store step into runs and sorts the runs, the nearest first. Any order
-/// leaves the same depths. In this order, most hidden draws have no effect and are skipped. Leaves
-/// out runs without a pixel in the job's rows.
+/// Divides the draws of a step into runs and sorts the runs, the nearest first. Any order leaves
+/// the same depths, but in this order most hidden draws have no effect and are skipped. Leaves out
+/// runs without a pixel in the job's rows.
 inline void front_to_back(const NativeJob& job, const Step& step, std::vector<DrawRun>& out) {
   constexpr std::uint32_t kRun = 16, kBuckets = 512;
   const std::uint32_t runs = (step.count + kRun - 1) / kRun;

@@ -1,6 +1,6 @@
-// Draws raw triangles. Snapped corners and edge functions are integers, which doubles hold exactly.
-// So comparing a pixel centre with an edge is exact. Comparing a pixel's square with a triangle is
-// exact, too: if square and triangle are disjoint, an axis or an edge's normal separates them.
+// Draws raw triangles (without an offset). Snapped corners and edge functions are integers, which
+// doubles hold exactly. So a pixel centre is compared exactly. A pixel's square is compared
+// exactly, too: an axis or an edge's normal separates the square from any disjoint triangle.
 #include "core/native/canvas.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ HWY_INLINE Wide columns() {
 /// place: the mapped depths of the corners.
 struct SnappedTriangle {
   double x[3], y[3], place[3];
-  double area = 0;  // twice the area, in square subpixels; 0: only `conservative` draws it
+  double area = 0;  // twice the area, in square subpixels; 0: drawn only if job.conservative
 
   HWY_INLINE SnappedTriangle(const NativeJob& job, const std::array<float, 12>& t) {
     for (int i = 0; i < 3; ++i) {
@@ -47,8 +47,8 @@ struct SnappedTriangle {
   }
 };
 
-/// Draws the covered pixels among the kWide pixels from `at` on. Returns true if this is a
-/// visibility test (Verb::ask in NativeOutput::run) and a fragment is seen.
+/// Draws the covered pixels among kWide pixels from `at` on. place: their mapped depths. Returns
+/// true if a fragment is seen in a visibility test (Verb::ask in NativeOutput::run).
 HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<WideTag> covered,
                          float* at) {
   const NarrowTag narrow;
@@ -66,8 +66,8 @@ HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<W
   return false;
 }
 
-/// Draws an element in the rows of the job. kTouched: the triangle has a fragment in every pixel
-/// that it touches. Returns true if take_row() returns true for a part of a row.
+/// Draws a triangle in the rows of the job. kTouched: draws a fragment in every pixel that the
+/// triangle touches. Returns true if a fragment is seen in a visibility test.
 template <bool kTouched>
 HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
@@ -75,7 +75,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
   if (y0 >= y1) return false;
   const SnappedTriangle t(job, job.drawables->triangles[element]);
   if (!kTouched && t.area == 0) return false;
-  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // half a pixel's side, or 0
+  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // half a pixel's side in subpixels, or 0
   const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
   const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
@@ -100,7 +100,7 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
         // Upper bound of the edge function's increase from a pixel's centre to its corners.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
         const Wide least = hn::Set(wide, -reach);
-        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge owns its points
+        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // a left or top edge covers its points
         covered = hn::And(covered, kTouched || owns ? hn::Ge(side, least) : hn::Gt(side, least));
         place = hn::Add(place, hn::Mul(hn::Mul(side, over), hn::Set(wide, t.place[i])));
       }

@@ -1,6 +1,6 @@
-// Answers each question by a search (core/proximity/scene_trees.h). Searches run in parallel; a
+// Answers each question by a search (core/proximity/scene_trees.h). Searches run in parallel, and a
 // long search is divided. nearest_objects() compares an object with other objects in the order of
-// the gaps between its parts and theirs, until a gap is above the k-th least upper bound so far.
+// the gaps between their boxes, until a gap is above the k-th smallest upper bound so far.
 // pairs_within() compares an object with the objects that have higher numbers.
 #include "core/proximity/near_pairs.h"
 
@@ -77,11 +77,11 @@ class Approach {
   const SceneTrees& trees_;
   std::span<const Box> parts_;
   std::priority_queue<Node> queue_;
-  std::unordered_set<std::uint32_t> given_;  // listed objects that other parts could list again
+  std::unordered_set<std::uint32_t> given_;  // listed objects that another part could list again
 };
 
 struct Found {
-  double lower = 0;  // bound of the distance, scaled
+  double lower = 0;  // lower bound of the distance, in scaled units
   double upper = 0;
   double limit = 0;
   NearPairs near;
@@ -94,7 +94,7 @@ void finish(const SceneTrees& trees, Search& search, SearchMemory& memory) {
   }
 }
 
-// Returns the k-th least upper bound of the searches. At least k objects are that near.
+// Returns the k-th smallest upper bound of the searches, which bounds the k-th distance.
 double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   if (searches.size() < k) return std::numeric_limits<double>::infinity();
   std::vector<double> upper;
@@ -104,11 +104,11 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
   return *kth;
 }
 
-// All triangles of a scene as one object, the crowd. If very many parts of objects overlap, a small
-// object (one leaf) is compared with the crowd. Comparing it with each other object would take
-// quadratic time.
+// The crowd: all triangles of a scene as one object. If very many parts of objects overlap, small
+// objects (one leaf each) are compared with the crowd. Comparing them with each other object would
+// take quadratic time.
 struct Crowd {
-  static constexpr std::size_t kOverlaps = 16;  // used with more pairs of parts per object
+  static constexpr std::size_t kOverlaps = 16;  // the crowd is used for more overlaps per object
 
   static bool is_small(const SceneTrees& trees, std::uint32_t object) {
     return trees.tree(object).leaves == 1;
@@ -148,8 +148,8 @@ struct NearestMemory {
   std::optional<SearchMemory> of_all;  // made at the first search in the crowd
 };
 
-// Returns the other objects that may be among an object's k nearest, ascending. Lowers `limit` to
-// an upper bound of the k-th distance. ties: as in Others.
+// Returns the other objects that may be among an object's k nearest, in ascending order. Lowers
+// `limit` to an upper bound of the k-th distance. ties: as in Others.
 std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& crowd,
                                        std::uint32_t object, std::size_t k, bool ties,
                                        double& limit, SearchMemory& memory,
@@ -177,7 +177,7 @@ std::vector<std::uint32_t> others_near(const SceneTrees& trees, const Crowd& cro
 
 // Returns the other objects that may be among the k nearest of an object. crowd: null if the object
 // is compared with each other object. hints: the hints that name the object, sorted. all: true to
-// include others with higher numbers that are as near as the k-th.
+// find all objects as near as the k-th; false to find only those with the lowest numbers.
 std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::uint32_t object,
                             std::size_t k, double limit, std::span<const NearHint> hints, bool all,
                             NearestMemory& both, ProximityCounts& counts) {
@@ -189,7 +189,7 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
     counts.triangle_pairs += begun.back().counts.triangle_pairs;
   }
   limit = std::min(limit, kth_least_upper(begun, k));
-  std::vector<double> least;  // the k least upper bounds, as a heap
+  std::vector<double> least;  // heap of the k smallest upper bounds
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
   std::vector<std::uint32_t> near;
   if (crowd) {
@@ -241,7 +241,7 @@ std::vector<Found> found_by(const SceneTrees& trees, const Crowd* crowd, std::ui
   return out;
 }
 
-// This many pairs of leaves, at most 16,384 pairs of triangles, are examined between two counts.
+// Pairs of leaves (at most 16,384 pairs of triangles) examined between two calls of Count::add().
 constexpr std::size_t kBetweenCounts = 64;
 
 // Counts the pairs of all threads. add() throws `error` if the count exceeds `most`.
@@ -272,8 +272,8 @@ void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit,
   counts.add_work(search.counts);
 }
 
-// Calls visit(other) for each object with a higher number that has a part at most `limit` (scaled)
-// from a part of `object`. Calls visit(object) if the object is marked `self`.
+// Calls visit(other) for each object with a higher number that has a part at most `limit` (scaled
+// units) from a part of `object`. Calls visit(object) if the object is marked `self`.
 template <class Visit>
 void for_later_within(const SceneTrees& trees, std::uint32_t object, double limit,
                       const Visit& visit) {
@@ -287,7 +287,7 @@ void for_later_within(const SceneTrees& trees, std::uint32_t object, double limi
 bool has(const Object& object, std::uint32_t triangle) {
   return triangle - object.first_triangle < object.triangle_count;
 }
-// True if hint.a < hint.b, hint.a is a triangle of objects.a, and hint.b one of objects.b.
+// True if hint.a < hint.b, hint.a is a triangle of objects.a, and hint.b is one of objects.b.
 bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
   return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
          has(scene.objects[objects.b], hint.b);

@@ -1,6 +1,6 @@
 // Makes the trees from the blocks of core/boxes/triangle_blocks.h. The blocks are sorted, so that
 // sixteen consecutive blocks lie near each other. A long search is divided into at most kParts
-// parts. The parts pause and are joined; then the search is divided again.
+// parts. After each part has examined some pairs, the parts are joined and divided again.
 #include "core/proximity/scene_trees.h"
 
 #include <string>
@@ -74,10 +74,10 @@ namespace {
 
 constexpr std::size_t kMostParts = 64;
 
-// Node k of an object's tree at this height. Height -1: triangle k of a leaf.
+// Node k of an object's tree, at the given height. Height -1 means triangle k of a leaf.
 struct Part {
   Box box;
-  double square;  // of the box's diagonal
+  double square;  // squared length of the box's diagonal
   int height;
   std::uint32_t k;
 };
@@ -198,7 +198,7 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
         out.corner[3 * corner + axis][k] = p[axis] * trees.scale();
     }
   }
-  // The compiler computes these loops over columns on lanes.
+  // The compiler vectorizes these loops over columns.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto &p = out.corner[axis], &q = out.corner[3 + axis], &r = out.corner[6 + axis];
     auto &lo = out.boxes.column[axis], &hi = out.boxes.column[3 + axis];
@@ -272,7 +272,7 @@ namespace {
 
 constexpr std::size_t kParts = 32;
 
-// Moves the open pairs of a search to new searches, which begin with the search's bound.
+// Moves the open pairs of a search to new searches, which begin with the same bound.
 std::vector<Search> divide(Search& search) {
   std::vector<Search> out(std::min(kParts, search.open.size()));
   for (Search& part : out) {

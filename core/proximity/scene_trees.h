@@ -1,5 +1,5 @@
-// A tree over the triangles of each object, a tree over the objects, and the search for the nearest
-// triangles of two objects: branch and bound over pairs of nodes of their trees.
+// Declares a tree over the triangles of each object, a tree over the objects, and the search for
+// the nearest triangles of two objects: branch and bound over pairs of nodes of their trees.
 //
 // A search pauses after a given number of pairs of leaves. It can then continue, or be divided into
 // searches that run in parallel. No search uses the results of another search, so a result depends
@@ -23,17 +23,17 @@
 
 namespace farcull::near {
 
-// Rounding errors of the arithmetic that finds near pairs, and the constants that bound them.
+// Derives the constants below, which bound the rounding errors of the search for near pairs.
 //
 // u = 2^-53. All coordinates are scaled (SceneTrees): |x| < 4, and scaling errs by at most 2^-1075.
 // "Exact" values are those for the given coordinates times the scale. Distances are scaled, too.
 //
-// Gaps of boxes. Along an axis, the computed gap is g = fl(lo - hi) if that is positive. A
-// difference does not underflow, so g <= (G + 2^-1074) (1 + u), where G < 8 is the exact gap. The
-// sum of squares has at most three more roundings, and a product below 2^-1022 errs by 2^-1075. So
-// the sum is at most (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. square_limit(P) computes P^2 (1 +
-// 16 u) + 2^-900 with three roundings, so it returns at least P^2 (1 + 12 u) + 2^-901. If the sum
-// is above square_limit(P), the exact distance is above P.
+// Gaps of boxes. Along an axis, the computed gap is g = max(0, fl(lo - hi)). A difference does not
+// underflow, so g <= (G + 2^-1074) (1 + u), where G < 8 is the exact gap. The sum of squares has at
+// most three more roundings, and a product below 2^-1022 errs by 2^-1075. So the sum is at most
+// (sum of G^2 + 2^-1069) (1 + u)^5 + 2^-1073. square_limit(P) computes P^2 (1 + 16 u) + 2^-900 with
+// three roundings, so it returns at least P^2 (1 + 12 u) + 2^-901. If the sum is above
+// square_limit(P), the exact distance is above P.
 //
 // Gaps along a direction d, any vector with components in [-16, 16]. Points are taken relative to
 // an origin: x = fl(point - origin) errs by u |x|. A dot product d.x has three products and two
@@ -48,8 +48,8 @@ namespace farcull::near {
 // at most u R (1 + 4 u) (differences) + 3 u R (products and sums) + 4 u R (weights, compared with
 // weights that sum to 1) < 9 u R. The same holds for q. The difference p - q has one rounding of 2
 // u R, so it errs by less than 20.1 u R per axis, or 35 u R in length. The computed length is below
-// 4 R and errs by less than 3 u of itself. With two sums that follow, this adds 20 u R. In all, the
-// error is at most 55 u R; kPoint is 64 u.
+// 4 R and errs by less than 3 u of itself. This error and the roundings of two later sums add 20 u
+// R. In all, the error is at most 55 u R; kPoint is 64 u.
 //
 // Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on
 // opposite sides of its plane, and the edge passes the triangle's three sides in the same sense.
@@ -59,8 +59,8 @@ namespace farcull::near {
 // magnitudes. kDeterminant is 16 u, which also covers the roundings of that sum. If all signs are
 // certain, the triangles share a point, and 0 is an upper bound of their distance.
 //
-// Underflow. A product errs by at most 2^-1075. That is far below the rounding of a squared length
-// above 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives no
+// Underflow. A product errs by at most 2^-1075, far below the rounding of a squared length above
+// 2^-900 (kLeastSquare). A smaller square counts as 2^-900 in an upper bound, and gives no
 // direction. All other losses by underflow are far below kAbsolute.
 
 constexpr double kUnit = 0x1p-53;
@@ -69,7 +69,7 @@ constexpr double kGap = 16 * kUnit;
 constexpr double kDeterminant = 16 * kUnit;
 constexpr double kLeastSquare = 0x1p-900;
 constexpr double kAbsolute = 0x1p-900;
-/// Larger than the square of any gap between boxes. Finite, while the gap to a missing box is
+/// A finite number, larger than the square of any gap between boxes. The gap to an empty box is
 /// infinite.
 constexpr double kMostSquare = 1024;
 
@@ -83,7 +83,7 @@ inline double square_limit(double limit) {
 /// If the gap of two points along a direction d is above the returned number, their distance is
 /// above `limit`. squared: the squared length of d. doubt: kGap |d|.X.
 inline double gap_limit(double limit, double squared, double doubt) {
-  // The root is off by less than 3 u of itself.
+  // The computed square root has a relative error of less than 3 u.
   return limit * (std::sqrt(squared) * (1 + 8 * kUnit)) * (1 + 4 * kUnit) + doubt + kAbsolute;
 }
 
@@ -92,10 +92,10 @@ inline double gap_limit(double limit, double squared, double doubt) {
 namespace farcull {
 
 /// The trees of a scene. A leaf is a block of at most sixteen triangles that lie near each other.
-/// All coordinates are multiplied by `scale`, a power of two. The largest magnitude of the scene
-/// then is in [1, 4), or below 1 if it was less than 2^-1000. So no computation with scaled
-/// coordinates overflows. A product with `scale` is exact, but if it is subnormal, it errs by at
-/// most 2^-1075.
+/// All coordinates are multiplied by `scale`, a power of two. The largest scaled magnitude is in
+/// [1, 4), or below 1 if the largest magnitude of the scene is less than 2^-1000. So no computation
+/// with scaled coordinates overflows. A scaled coordinate is exact, unless it is subnormal: then
+/// its error is at most 2^-1075.
 class SceneTrees {
  public:
   SceneTrees(const Scene& scene, unsigned threads, Settle settle = {});
@@ -104,9 +104,9 @@ class SceneTrees {
   const Settle& settle() const { return settle_; }
   double scale() const { return scale_; }
   const WideBoxes<double>* blocks() const { return blocks_.data(); }
-  /// The tree's leaves are the blocks of the object, counted from 0.
+  /// Returns the tree of an object. The leaves are the object's blocks, numbered from 0.
   const BoxTree<double>& tree(std::uint32_t object) const { return trees_[object]; }
-  /// Returns the number, among the leaves of all objects, of leaf k of an object.
+  /// Returns the index, among the leaves of all objects, of leaf k of this object.
   std::uint32_t leaf(std::uint32_t object, std::uint32_t k) const { return of_.first[object] + k; }
   std::uint32_t count(std::uint32_t leaf) const { return of_.ranges[place_[leaf]].count; }
   std::uint32_t triangle(std::uint32_t leaf, std::uint32_t k) const {
@@ -121,7 +121,7 @@ class SceneTrees {
     return std::span(parts_).subspan(first_part_[object],
                                      first_part_[object + 1] - first_part_[object]);
   }
-  /// Returns the lowest number of a triangle below node k of an object's tree at this height.
+  /// Returns the lowest triangle number below node k of an object's tree at this height.
   std::uint32_t least(std::uint32_t object, std::size_t height, std::uint32_t k) const {
     const BoxTree<double>& tree = trees_[object];
     if (height == static_cast<std::size_t>(tree.levels))
@@ -143,14 +143,14 @@ class SceneTrees {
   Settle settle_;
   double scale_ = 1;
   TriangleBlocks of_;
-  std::vector<std::uint32_t> place_;  // per leaf: an index in of_.ranges
+  std::vector<std::uint32_t> place_;  // one index in of_.ranges per leaf
   std::vector<BoxTree<double>> trees_;
   std::vector<Box> parts_;
-  std::vector<std::size_t> first_part_;  // per object: its first part; then the number of all parts
+  std::vector<std::size_t> first_part_;  // index of each object's first part; last: number of parts
   BoxTree<double> objects_;
   std::vector<std::uint32_t> object_of_leaf_;
   UninitializedVector<WideBoxes<double>> blocks_;
-  std::vector<std::array<std::uint32_t, kWide>> least_;  // per box of blocks_; see least()
+  std::vector<std::array<std::uint32_t, kWide>> least_;  // one per box of blocks_; see least()
 };
 
 /// The corners of sixteen scaled triangles, in columns: column 3 * corner + axis.
@@ -177,19 +177,19 @@ struct alignas(64) BlockCorners {
   alignas(64) std::array<double, kWide> extreme;  // per triangle: its largest or smallest
                                                   // coordinate along the direction
   double most_extreme = 0;
-  std::uint64_t direction = 0;  // the direction's number in SearchMemory; 0: none
+  std::uint64_t direction = 0;  // number of the direction (SearchMemory); 0: none
   std::uint32_t leaf = UINT32_MAX;
   std::uint32_t count = 0;
 };
 
-/// Loads a leaf, numbered by SceneTrees::leaf(). Columns behind the leaf's last triangle repeat
-/// that triangle, but have empty boxes.
+/// Loads a leaf, numbered by SceneTrees::leaf(). Columns after the leaf's last triangle repeat that
+/// triangle, but have empty boxes.
 void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out);
 
 /// True if the triangles have a corner at the same position.
 bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
-/// Two nodes of trees, by height and number. square: the squared gap of their boxes.
+/// A pair of nodes, each with its height and number. square: the squared gap of their boxes.
 struct NodePair {
   double square;
   std::uint32_t a, b;
@@ -202,13 +202,13 @@ struct KeptPair {
   double lower, upper;
 };
 
-/// The reach (SettledPair) of each triangle of an object. For each node of the object's tree, the
-/// greatest reach of a triangle below the node.
+/// Holds the reach (SettledPair) of each triangle of an object. Also holds, for each node of the
+/// object's tree, the greatest reach of a triangle below the node.
 struct Reaches {
   Reaches(const SceneTrees& trees, std::uint32_t object,
           const std::function<double(std::uint32_t)>& reach);
-  std::vector<std::vector<double>> nodes;  // by height and number
-  std::vector<double> triangles;           // at kWide * leaf + k
+  std::vector<std::vector<double>> nodes;  // index: height, then number of the node
+  std::vector<double> triangles;           // index: kWide * leaf + k
 };
 
 /// Proves that other pairs of triangles are no nearer than a settled pair.
@@ -225,10 +225,10 @@ struct Planes {
 struct Others {
   const SceneTrees* all;
   const Scene& scene;
-  std::span<const std::uint32_t> owner;  // per triangle
+  std::span<const std::uint32_t> owner;  // object of each triangle
   std::uint32_t object;                  // the search finds objects near this object
-  std::size_t k;                         // how many others are searched for
-  bool ties;                             // keeps all others that are as near as the k-th
+  std::size_t k;                         // number of other objects to find
+  bool ties;                             // true: keeps all others that are as near as the k-th
   /// Triangles from this number on need no search, since k other objects with only lower triangle
   /// numbers certainly meet the object.
   std::uint32_t end = UINT32_MAX;
@@ -254,14 +254,14 @@ struct Search {
   Others* others = nullptr;  // if set, objects.b is the one object of Others::all
   double limit = 0;          // scaled; pairs farther apart are not searched for
   double upper = std::numeric_limits<double>::infinity();  // the least upper bound of a pair so far
-  /// The first pair, in the order of pairs, that is known to meet. No later pair is the answer.
+  /// The first pair, in sorted order, that is known to meet. No later pair can be the answer.
   TrianglePair first = {UINT32_MAX, UINT32_MAX};
   /// The kept pair that the latest settle() chose.
   TrianglePair settled = {UINT32_MAX, UINT32_MAX};
-  std::shared_ptr<const Planes> planes;  // of `settled`, or of a pair that was settled before
-  bool is_part = false;                  // part of a divided search; makes no planes
-  Vec3 direction = Vec3::Zero();         // between two triangles about `upper` apart; 0: none
-  std::vector<NodePair> open;            // pairs to examine, from the last to the first
+  std::shared_ptr<const Planes> planes;  // planes of `settled`, or of an earlier settled pair
+  bool is_part = false;                  // part of a divided search; such a part makes no planes
+  Vec3 direction = Vec3::Zero();         // between closest points of the best pair; 0: unknown
+  std::vector<NodePair> open;            // pairs to examine; the last pair comes first
   std::vector<KeptPair> kept;
   bool everything = false;       // true: keeps all pairs within the limit
   std::size_t kept_most = 1024;  // with more kept pairs, the search calls filter(), then settle()
@@ -278,7 +278,7 @@ struct SearchMemory {
   static constexpr std::uint32_t kLeaves = 64;
   SearchMemory() : a(kLeaves), b(kLeaves) {}
 
-  std::vector<BlockCorners> a, b;  // caches of leaves of objects.a and objects.b: leaf % kLeaves
+  std::vector<BlockCorners> a, b;  // caches of leaves; leaf l of objects.a is a[l % kLeaves]
   std::uint64_t directions = 0;    // the number of directions used so far
   PairBatch batch;
 };
@@ -296,8 +296,8 @@ void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemo
 /// A search examines this many pairs of leaves, then pauses. If it is not finished, it is divided.
 constexpr std::size_t kLeafPairsAtOnce = 4096;
 
-/// Drops all kept pairs except the first of the nearest pairs, by exact arithmetic. Does nothing if
-/// the trees have no Settle. Precondition: some pair is kept.
+/// Drops all kept pairs except the nearest, by exact arithmetic. If several are nearest, keeps the
+/// first. Does nothing if the trees have no Settle. Precondition: some pair is kept.
 void settle(const SceneTrees& trees, Search& search);
 /// Converts a limit from world units to scaled units, rounded up.
 double scaled_limit(const SceneTrees& trees, double within);

@@ -1,5 +1,5 @@
-// Branch and bound on the lanes of this processor. All instruction sets round alike, so they give
-// the same results in the same order.
+// Implements the search (branch and bound) with SIMD. All instruction sets round alike, so they
+// give the same results in the same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
 #include <hwy/foreach_target.h>
@@ -35,7 +35,7 @@ class Searcher {
     Box both = a_.tree().box;
     both.add(b_.tree().box);
     origin_ = 0.5 * both.lo + 0.5 * both.hi;
-    // A computed difference errs by u of itself; near::kGap covers this error.
+    // A computed difference has a relative error of at most u, which near::kGap covers.
     extent_ = (both.hi - origin_).cwiseMax(origin_ - both.lo);
     new_bound();
     new_direction();
@@ -120,7 +120,7 @@ class Searcher {
   // Returns a pair at or before every pair of triangles below the nodes.
   TrianglePair lower_bound(const NodePair& at) const {
     const TrianglePair lowest = least(at);
-    // If the objects are one, either node may hold the lower triangle.
+    // In a search within one object, either node may hold the lower triangle.
     return self_ ? TrianglePair{std::min(lowest.a, lowest.b), 0} : lowest;
   }
   // True if the planes prove that no pair of triangles below the nodes is the answer.
@@ -146,8 +146,8 @@ class Searcher {
     return is(a[s], -b[t]) || (self_ && is(a[t], -b[s]));
   }
 
-  // Descends to the pair of leaves that seems nearest. In these leaves, bounds the distance of the
-  // two triangles with the nearest corners, to get a first bound.
+  // Descends to the pair of leaves that seems nearest. There, bounds the distance of the two
+  // triangles whose first corners are nearest, to get a first bound.
   void descend() {
     NodePair at = search_.open.back();
     while (at.a_height > 0 || at.b_height > 0) {
@@ -301,7 +301,7 @@ class Searcher {
     return bits;
   }
 
-  // The least and the largest coordinate along a direction, of a triangle on each lane.
+  // The least and the largest coordinate of the triangle on each lane, along a direction.
   struct Ends {
     Number least, most;
   };
@@ -366,7 +366,7 @@ class Searcher {
   }
   void add(const BlockCorners& a, std::size_t i, const BlockCorners& b, std::size_t j) {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
-    // The order is fixed, since the last digits of the bounds depend on it.
+    // The lower triangle number comes first, since roundings of the bounds depend on the order.
     if (first > second) return add(b, j, a, i);
     if (search_.is_behind({first, second}) || !counts(first, second)) return;
     PairBatch& batch = memory_.batch;
@@ -395,7 +395,7 @@ class Searcher {
     if (batch.count == 0) return;
     BatchBounds bounds;
     bound_batch(batch, bounds);
-    // Two triangles with a common corner meet. The bounds may not show that if no edge pierces a
+    // Two triangles with a common corner meet. The bounds may not show this if no edge pierces a
     // face, as in equal objects and in fans.
     for (std::size_t k = 0; k < batch.count && !self_; ++k) {
       const auto& [a, b] = batch.pairs[k];
@@ -419,8 +419,8 @@ class Searcher {
     }
     if (best < kWide) {
       new_bound();
-      // If many pairs are at almost the same distance, rounding errors may lower the bound a
-      // little. Then the direction is kept.
+      // If many pairs are at almost the same distance, the bound often decreases only a little.
+      // Then the direction is kept.
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};

@@ -50,13 +50,13 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-/// A point of a triangle: the weights of corners 1 and 2. Corner 0 has the remaining weight.
+/// Barycentric weights of corners 1 and 2 for a point of a triangle. Corner 0 has the rest.
 struct Weights {
   Number one, two;
 };
 HWY_INLINE Weights at_corner(int k) { return {number(k == 1), number(k == 2)}; }
-/// Returns the weights of the point at fraction t, in [0, 1], of the edge from corner k to the
-/// next.
+/// Returns the weights of the point at fraction t (0 to 1) of the edge from corner k to the next
+/// corner.
 HWY_INLINE Weights on_edge(int k, Number t) {
   const Number rest = hn::Sub(number(1), t);
   if (k == 0) return {t, number(0)};
@@ -70,7 +70,7 @@ struct LaneTriangle {
   Point corner[3];
   Point edge[3];      // from each corner to the next
   Number squared[3];  // the edges' squared lengths
-  // Dot products of e, which is edge 0, and f, which leads from corner 0 to corner 2.
+  // Dot products and Gram determinant of e (edge 0) and f (from corner 0 to corner 2).
   Number ee, ef, ff, determinant;
 
   HWY_INLINE LaneTriangle(const CornerColumns& columns, std::size_t from, const Point& origin)
@@ -131,8 +131,8 @@ class Guess {
     own_best = chosen(better, own, own_best);
     other_best = chosen(better, other, other_best);
   }
-  // Offers the nearest points of two edges. Starts with the nearest points of their lines. Then
-  // takes, on each edge, the point nearest to the chosen point of the other edge.
+  // Offers the nearest points of two edges as closest points. Starts with the nearest points of
+  // their lines. Then takes, on each edge, the point nearest to the chosen point of the other edge.
   HWY_INLINE void offer_edges(int i, int j) {
     const Point &u = a_.edge[i], &v = b_.edge[j];
     const Point w = a_.corner[i] - b_.corner[j];
@@ -160,7 +160,7 @@ class Guess {
     const Point normal = cross(face.edge[2], face.edge[0]);
     const Point w = own.corner[k] - face.corner[0];
     const Number at = dot(normal, w), slope = dot(normal, own.edge[k]);
-    // -at / slope, with a positive denominator.
+    // t = -at / slope, computed with a positive denominator.
     const Mask falls = hn::Lt(slope, number(0));
     const Number t = clamped(ratio(hn::IfThenElse(falls, at, hn::Neg(at)), hn::Abs(slope)));
     const Point p = w + times(own.edge[k], t);
@@ -169,8 +169,8 @@ class Guess {
     const Point difference = p - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, on_edge(k, t), foot, own_best, other_best);
   }
-  // Returns the projection of w, a point relative to the face's corner 0, on the face's plane. Sets
-  // `inside` where the projection is in the face.
+  // Returns the weights of the projection of w on the face's plane. w is relative to the face's
+  // corner 0. Sets `inside` on the lanes whose projection is in the face.
   HWY_INLINE static Weights over(const Point& w, const LaneTriangle& face, Mask& inside) {
     const Number zero = number(0), det = face.determinant;
     const Number ew = dot(face.edge[0], w), fw = hn::Neg(dot(face.edge[2], w));
@@ -187,7 +187,7 @@ class Guess {
   Weights on_a_, on_b_;
 };
 
-/// The bounds of the distance, derived in core/proximity/scene_trees.h.
+/// Computes the bounds of the distance that core/proximity/scene_trees.h derives.
 class Proof {
  public:
   HWY_INLINE Proof(const LaneTriangle& a, const LaneTriangle& b) : a_(a), b_(b) {
@@ -213,7 +213,7 @@ class Proof {
         hn::Add(hn::Mul(number(near::kGap), dot({hn::Abs(d.x), hn::Abs(d.y), hn::Abs(d.z)}, most_)),
                 absolute);
     const Number gap = hn::Sub(hn::Sub(b_least, a_most), doubt);
-    // 8 u cover the roundings of the gap, of the length (3 u) and of the quotient.
+    // The factor 1 - 8 u covers the roundings of the gap, of the length (3 u) and of the quotient.
     const Number quotient = hn::Mul(hn::Div(gap, length), number(1 - 8 * near::kUnit));
     lower = hn::IfThenElseZero(hn::Ge(squared, least_square), hn::Max(quotient, number(0)));
   }
@@ -258,7 +258,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
     a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
     b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
     for (int j = 0; j < 3; ++j) {
-      // The sense in which edge k of a passes edge j of b; exchanging the edges changes nothing.
+      // Orientation of edge k of a and edge j of b. Exchanging the edges gives the same sign.
       passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
     }
   }
@@ -281,7 +281,7 @@ HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   return out;
 }
 
-/// Bounds the pairs of a batch. The lanes behind the last pair get arbitrary numbers.
+/// Bounds the distance of each pair of a batch. Lanes after the last pair get arbitrary numbers.
 HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
   const Numbers n;
   for (std::size_t from = 0; from < batch.count; from += kLanes) {
@@ -292,8 +292,8 @@ HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
     Point d = guess.difference();
     Number lower, upper;
     proof.bound(d, lower, upper);
-    // No edge pierces a face if the triangles are apart. The bounds of such triangles stay as they
-    // are, so that they do not depend on other pairs of the batch.
+    // If the triangles of a pair are apart, no edge pierces a face. Such a pair keeps its bounds,
+    // so that its bounds do not depend on other pairs of the batch.
     const Mask apart = hn::Gt(lower, number(0));
     if (!hn::AllTrue(n, apart)) {
       guess.offer_piercings();

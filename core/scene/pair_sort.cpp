@@ -1,5 +1,5 @@
-// Puts pairs into buckets by their first triangle. Sorts each bucket by the second triangle, or
-// marks the second triangles as bits.
+// Implements a bucket sort with one bucket per first triangle. Sorts each bucket by the second
+// triangle, or marks the second triangles as bits.
 #include "core/scene/pair_sort.h"
 
 #include <bit>
@@ -13,12 +13,12 @@ namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
 
-// The second triangles of at least this many pairs may be marked as bits instead of sorted.
+// With at least this many pairs, second triangles may be marked as bits instead of sorted.
 constexpr std::size_t kMarkFrom = 64;
 
 // Sorts pairs that have the same first triangle, moves the distinct pairs to the front, and returns
 // their number. If many second triangles lie in a small range, marks them in `bits` instead of
-// sorting. All words of `bits` must be 0 before a call, and are 0 after it.
+// sorting. All words of `bits` must be 0 before the call, and are 0 after the call.
 std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64_t>& bits) {
   if (pairs.size() >= kMarkFrom) {
     const auto [least, most] = std::ranges::minmax_element(pairs);
@@ -43,7 +43,7 @@ std::size_t sort_partners(std::span<TrianglePair> pairs, std::vector<std::uint64
   return static_cast<std::size_t>(after - pairs.begin());
 }
 
-// The pairs with from <= a < to. After count(), first[k] pairs have a < from + k.
+// Handles the pairs with from <= a < to. After count(), first[k] of these pairs have a < from + k.
 struct Range {
   std::uint64_t from = 0, to = 0;
   std::vector<std::uint32_t> first = {};
@@ -62,8 +62,8 @@ struct Range {
   // Sorts the pairs into `out`, which has room for size() pairs. Returns the number of distinct
   // pairs, which are at the front of `out`.
   std::size_t sort(Parts parts, std::span<TrianglePair> out) {
-    // Fills group k, the pairs with a == from + k, from its end. So first[k + 1] becomes the start
-    // of group k.
+    // Group k contains the pairs with a == from + k. Fills each group from its end, so that first[k
+    // + 1] becomes the start of group k.
     for (const auto& part : parts) {
       for (const TrianglePair& pair : part) {
         if (pair.a >= from && pair.a < to) out[--first[pair.a - from + 1]] = pair;
@@ -82,7 +82,7 @@ struct Range {
   }
 };
 
-// Does the same as sorted_unique(). Empties `given`, if it is not null, once all parts are read.
+// Implements sorted_unique(). If `given` is not null, empties it once all parts are read.
 std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
                                     std::vector<std::vector<TrianglePair>>* given) {
   std::uint64_t least = UINT64_MAX, most = 0;
@@ -97,7 +97,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads,
   if (total == 0) return {};
   const std::uint64_t span = most - least + 1;
   std::vector<TrianglePair> out;
-  // Counting needs 32-bit positions. For few pairs in a large range of `a`, std::sort is faster.
+  // Range counts in 32 bits. For few pairs in a large range of `a`, std::sort is faster.
   if (total < span / 16 || total > UINT32_MAX) {
     out.reserve(total);
     for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());

@@ -1,4 +1,4 @@
-// Collects pairs (a, b) of triangle indices, in bounded memory even if many repeat, and sorts them.
+// Collects and sorts pairs (a, b) of triangle indices. Memory is bounded even if many pairs repeat.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace farcull {
 /// per core).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
-/// Does the same, and empties the parts once it has read them, to free memory.
+/// Does the same. Also empties the parts after reading them, to free memory.
 std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
                                         unsigned threads);
 
@@ -36,10 +36,10 @@ class GatheredPairs {
   std::vector<std::vector<TrianglePair>> parts_;
 };
 
-/// Collects pairs from several threads; a pair may come several times. Each thread adds to its own
-/// list. All threads' lists together hold at most max(`buffer`, number of distinct pairs) pairs. A
-/// list that reaches its share of this limit is sorted and merged into a common list of distinct
-/// pairs. So the work stays linear in the number of added pairs.
+/// Collects pairs from several threads. A pair may be added several times. Each thread adds to its
+/// own list. All threads' lists together hold at most max(`buffer`, number of distinct pairs)
+/// pairs. A list that reaches its share of this limit is sorted and merged into a common list of
+/// distinct pairs. So the work stays linear in the number of added pairs.
 class PairPool {
  public:
   /// lists: number of threads that add at once. buffer: limits the pairs in all threads' lists.

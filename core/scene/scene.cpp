@@ -196,7 +196,7 @@ void MovedCorners::update(const Scene& scene, const FrameChange* change) {
 }
 
 FrameChange MovedCorners::compare(const Scene& scene) {
-  constexpr std::size_t kAtOnce = 64;  // vertices per group; in most groups, no vertex moved
+  constexpr std::size_t kAtOnce = 64;  // vertices compared at once; in most groups, no vertex moved
   // The copy is taken out of last_, so that an allocation that throws leaves no partial copy there.
   std::optional<Copy> copy = std::exchange(last_, {});
   FrameChange out;

@@ -1,5 +1,5 @@
-// A scene: triangles in flat arrays, grouped into objects. Coordinates are the given doubles; they
-// are never rounded.
+// Defines Scene: triangles in flat arrays, grouped into objects. The coordinates are the given
+// doubles, and are never rounded.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct Box {
   }
 };
 
-/// Returns the common part of two boxes, an empty box if they do not overlap.
+/// Returns the common part of two boxes, or an empty box if they do not overlap.
 inline Box intersection(const Box& a, const Box& b) {
   return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)};
 }
@@ -42,7 +42,7 @@ inline bool lies_within(const Box& inner, const Box& outer) {
   return (inner.lo.array() >= outer.lo.array() && inner.hi.array() <= outer.hi.array()).all();
 }
 
-/// Two objects, as indices a < b; or an object and itself, if a == b.
+/// Two objects, as indices a < b. If a == b, this is an object and itself.
 struct ObjectPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -56,10 +56,10 @@ struct Object {
   bool self = false;                 // true: its own triangles are tested against each other
 };
 
-/// A polygon of a file that is not simple, so that its triangles overlap or face opposite ways.
+/// A non-simple polygon of an input file: its triangles overlap or face opposite ways.
 struct FoldedFace {
   std::uint32_t object = 0;
-  std::uint32_t face = 0;  // as in Scene::source_face
+  std::uint32_t face = 0;  // number of the polygon, as in Scene::source_face
   auto operator<=>(const FoldedFace&) const = default;
 };
 
@@ -67,12 +67,12 @@ struct FoldedFace {
 /// order of the input.
 struct Scene {
   std::string name;
-  std::vector<Vec3> vertices;  // finite
+  std::vector<Vec3> vertices;  // all finite
   /// Each triangle is three indices into `vertices`. Degenerate triangles are kept.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> source_face;  // per triangle: its polygon in the file, counted from 0
   std::vector<Object> objects;
-  std::vector<ObjectPair> ignored = {};  // pairs that are not tested; a result of in_order()
+  std::vector<ObjectPair> ignored = {};  // pairs of objects that are not tested; see in_order()
   std::vector<FoldedFace> folded = {};   // sorted
 
   std::array<Vec3, 3> corners(std::uint32_t triangle) const {
@@ -106,7 +106,7 @@ inline bool share_index(const std::array<std::uint32_t, 3>& a,
   return shared;
 }
 
-/// The range of vertices that an object uses. Ranges of two objects seldom overlap.
+/// The lowest and the highest vertex index that an object uses. Ranges of objects seldom overlap.
 struct VertexRange {
   std::uint32_t first = 0, last = 0;
 };
@@ -126,9 +126,9 @@ inline VertexRange vertices_of(const Scene& scene, const Object& object) {
 /// the objects' ranges of triangles have no gaps, and `ignored` is sorted.
 void validate(const Scene& scene, const std::string& where);
 
-/// threads: 0 for one per core.
+/// Returns the box of each triangle. threads: 0 means one per core.
 std::vector<Box> triangle_boxes(const Scene& scene, unsigned threads = 1);
-/// Returns the box of each object's triangles. It is empty for an object without triangles.
+/// Returns the box of each object's triangles. An object without triangles has an empty box.
 std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_boxes);
 /// Returns the object of each triangle.
 std::vector<std::uint32_t> owners(const Scene& scene);
@@ -161,7 +161,7 @@ std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ign
 /// Throws Error if the scene ignores pairs of objects. who: the operation that needs all pairs.
 void require_nothing_ignored(const Scene& scene, const std::string& who);
 
-/// True for a pair of triangles whose objects are an ignored pair.
+/// Tells whether the objects of a pair of triangles are an ignored pair.
 class IgnoredObjects {
  public:
   /// Parameters and errors are those of remove_ignored(). The scene need not outlive this object.
@@ -170,32 +170,32 @@ class IgnoredObjects {
   bool operator()(const TrianglePair& pair) const;
 
  private:
-  std::vector<std::uint32_t> owner_;  // per triangle
-  // The objects a < b that are ignored with object b: others_[first_[b]] to
-  // others_[first_[b + 1] - 1], ascending.
+  std::vector<std::uint32_t> owner_;  // object of each triangle
+  // others_[first_[b]] to others_[first_[b + 1] - 1] are the objects a < b for which (a, b) is an
+  // ignored pair, ascending.
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> others_;
 };
 
-/// What changed from the previous frame of a scene to this one.
+/// The changes from the previous frame of a scene to the present frame.
 struct FrameChange {
   bool same = false;                    // true: vertex count, triangles and objects are unchanged
   std::vector<std::uint32_t> vertices;  // if `same`: the distinct vertices that moved
 };
 
 /// Finds the corners that moved between two frames of the same triangles and objects. A class that
-/// keeps results of a frame also keeps the frame's number, frame(). It may use the results only if
-/// follows(number) is true.
+/// reuses results of a frame stores the frame's number, frame(), with the results. It may use these
+/// results only if follows(number) is true.
 class MovedCorners {
  public:
   /// Begins the next frame. change: what changed; if null, the scene is compared with a copy of the
   /// last frame, which this object keeps. If waits() was true before the call, `change` is ignored
   /// and nothing is compared.
   void update(const Scene& scene, const FrameChange* change = nullptr);
-  /// True if the next update() compares nothing, because knowing what moved has saved no work.
+  /// True if the next update() compares nothing, because knowing the changes has saved no work.
   bool waits() const { return waits_ > 0; }
-  /// Records whether knowing what moved saved work in this frame. Call at most once a frame. Has no
-  /// effect if it is not known what moved.
+  /// Records whether knowing the changes saved work in this frame. Call at most once per frame. Has
+  /// no effect if the changes are unknown.
   void notify(bool worth_while);
   /// Returns the number of the present frame, counted from 1.
   std::uint64_t frame() const { return frame_; }
@@ -230,11 +230,11 @@ class MovedCorners {
   std::vector<std::uint32_t> triangles_;      // triangles with a corner that moved
 };
 
-/// True if neither triangle moved in at least half of the pairs of an evenly spaced sample. Without
-/// pairs, true if nothing moved.
+/// Examines an evenly spaced sample of the pairs. True if neither triangle moved in at least half
+/// of the sample. Without pairs, true if nothing moved.
 bool mostly_unmoved(const MovedCorners& moved, std::span<const TrianglePair> pairs);
 
-/// True if the determinant is larger than its rounding errors. r: the matrix, row by row, finite.
+/// True if the determinant certainly is not 0, despite rounding. r: the matrix, row by row, finite.
 ///
 /// Each row is divided by its largest magnitude, which does not change the sign of the determinant.
 /// A term of the determinant then has at most 8 roundings, each by at most u = 2^-53: three

@@ -20,7 +20,7 @@ namespace {
 // sort is cheaper.
 constexpr std::uint64_t kMoves = 8;
 
-// Sorts a list that is almost sorted. Calls exchanged(e, f) when an element e moves from behind an
+// Sorts a list that is almost sorted. Calls exchanged(e, f) when an element e moves from after an
 // element f to before f. Returns false, and leaves the list unsorted, if this takes more than
 // kMoves moves per element.
 template <class Element, class Exchanged>
@@ -49,12 +49,12 @@ bool meet(const Box& a, const Box& b) {
 
 enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
 
-/// This bit marks a group of one triangle. Each triangle of a `self` object is such a group.
+/// A triangle of a `self` object forms a group of its own, which this bit marks.
 constexpr std::uint32_t kAlone = 1u << 31;
 
 constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
 
-/// The lower end of a box along the axis of the sweep, and the index of the item or triangle.
+/// The lower end of a box along the axis of the sweep. index: of an item or a triangle.
 struct Key {
   double lo;
   std::uint32_t index;
@@ -75,7 +75,7 @@ const std::vector<TrianglePair>& BoxSweep::update(std::span<const Box> boxes) {
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (!boxes[i].is_empty()) present.push_back(i);
   }
-  // If the last update() threw, the ends may not fit the pairs.
+  // If the last update() threw, the stored ends and the stored pairs may be inconsistent.
   const bool is_whole = std::exchange(is_whole_, false);
   from_scratch_ = !is_whole || present != present_ || boxes.size() != boxes_.size();
   present_ = std::move(present);
@@ -262,7 +262,7 @@ void SweepPrune::choose_columns(std::span<const Box> boxes) {
   while (bits_[0] + bits_[1] > most) --bits_[bits_[0] < bits_[1] ? 1 : 0];
 }
 
-/// Makes order_ the list of survivors. Triangles that were in order_ keep their order.
+/// Makes order_ the list of survivors. Triangles that were in order_ before keep their order.
 void SweepPrune::renew_order(std::size_t triangles) {
   std::size_t kept = 0;
   for (const std::uint32_t t : order_) {
@@ -276,13 +276,13 @@ void SweepPrune::renew_order(std::size_t triangles) {
   }
 }
 
-/// Puts the triangles into their columns, in the order of order_. Since long boxes are in many
-/// columns, the columns are doubled in width until there are few entries per triangle.
+/// Puts the triangles into their columns, in the order of order_. Long boxes are in many columns.
+/// Doubles the width of the columns until the mean entries per triangle are at most kEntries.
 void SweepPrune::fill_columns(std::span<const Box> boxes) {
   constexpr std::uint64_t kEntries = 4;
   const auto [sweep, u, v] = axes_;
-  // column() is monotone in x. So if two boxes overlap, the column of the larger lower end has both
-  // boxes.
+  // column() is monotone in x. So if two boxes overlap, both are in the column that contains the
+  // larger of their lower ends.
   const auto column = [this](double x, int k) {
     const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
     const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));

@@ -1,5 +1,5 @@
-// I-COLLIDE: sweep and prune on axis-aligned boxes with temporal coherence. It is the object-space
-// method with which culling by pixels is compared.
+// I-COLLIDE: sweep and prune on axis-aligned boxes with temporal coherence. Culling by pixels is
+// compared with this object-space method.
 //
 // Source: Cohen, Lin, Manocha, Ponamgi, I-COLLIDE: An Interactive and Exact Collision Detection
 // System for Large-Scale Environments (I3D 1995), section 4. The ends of all boxes along each axis
@@ -7,7 +7,7 @@
 // the ends of two boxes change places, the boxes may begin or cease to overlap. For two objects
 // whose boxes overlap, I-COLLIDE tracks features of convex bodies. farcull accepts any triangles.
 // It sweeps the triangles of such objects along one axis, in columns that divide the other two
-// axes. The order of the triangles along that axis is kept between frames.
+// axes. The order of the triangles along the sweep axis is kept between frames.
 //
 // Reliable: the sweep loses no pair of overlapping boxes, since doubles are only compared. The kept
 // order affects the time and the counts of swaps and sorts, but no answer. Each call may get a
@@ -34,8 +34,8 @@ class BoxSweep {
 
   /// Returns how often two neighbours in a list of ends changed places in the last update().
   std::uint64_t swaps() const { return swaps_; }
-  /// True if the last update() sorted the lists from scratch. That is so if there were too many
-  /// exchanges, or if the set of empty boxes had changed.
+  /// True if the last update() sorted the lists from scratch. This happens if there were too many
+  /// exchanges, or if the set of empty boxes changed.
   bool sorted_from_scratch() const { return from_scratch_; }
   /// Drops all state, so that the next update() sorts from scratch.
   void forget() { *this = BoxSweep(); }
@@ -43,7 +43,7 @@ class BoxSweep {
  private:
   struct End {
     double value;
-    std::uint32_t box_and_side;  // 2 box + 1 for the upper end
+    std::uint32_t box_and_side;  // 2 * box for the lower end, 2 * box + 1 for the upper end
     // At equal values, lower ends come first, since boxes that touch overlap.
     bool operator<(const End& f) const {
       return value < f.value || (value == f.value && (box_and_side & 1) < (f.box_and_side & 1));
@@ -64,13 +64,13 @@ class BoxSweep {
   bool is_whole_ = false;  // false if an update() did not finish
 };
 
-/// Counts of what remains after culling, and of the work.
+/// Numbers of objects and triangles that remain after culling, and counts of the work.
 struct SweepPruneCounts {
   std::uint64_t objects = 0;         // objects in object_pairs, or `self` with 2 or more triangles
   std::uint64_t object_pairs = 0;    // pairs of objects whose boxes overlap
   std::uint64_t triangles = 0;       // triangles in a candidate pair
-  std::uint64_t triangle_pairs = 0;  // candidates
-  std::uint64_t swaps = 0;           // how often neighbours in a list changed places
+  std::uint64_t triangle_pairs = 0;  // candidate pairs of triangles
+  std::uint64_t swaps = 0;           // exchanges of neighbours in a sorted list
   std::uint64_t sorts = 0;           // lists that were sorted from scratch
 };
 
@@ -128,13 +128,13 @@ class SweepPrune {
 
   // Values of the running call. They are members so that their memory is reused.
   std::vector<std::uint32_t> survivors_;  // triangles that may have candidates; ascending
-  std::vector<std::uint32_t> groups_;     // per triangle
-  std::vector<std::uint8_t> marks_;       // per triangle: its Mark
+  std::vector<std::uint32_t> groups_;     // group of each triangle (Item::group)
+  std::vector<std::uint8_t> marks_;       // Mark of each triangle
   std::array<double, 2> from_ = {0, 0};   // where the first column begins along axes_[1], axes_[2]
   std::array<double, 2> scale_ = {0, 0};  // 2^10 / extent along axes_[1], axes_[2]
   std::array<int, 2> bits_ = {0, 0};      // there are 2^bits_[k] columns along axes_[1 + k]
   std::vector<Item> items_;               // one for each triangle in order_
-  std::vector<std::size_t> starts_;       // per column: its start in entries_
+  std::vector<std::size_t> starts_;       // start of each column in entries_
   std::vector<Item> entries_;             // the items of each column, one column after the other
 };
 

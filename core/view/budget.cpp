@@ -36,13 +36,13 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   const double half = 0.5 * viewport;  // M, the largest |coordinate| relative to the centre
   Budget b;
   b.sampling = kSqrt2 / 2;
-  // Rounding a coordinate to the nearest float errs by at most kUnit / 2 of M. Its computation in
-  // double errs by less. On the CPU, edges of a proxy are compared with pixel centres in floats,
-  // which adds at most 3.01 kUnit of M (docs/budget.md, "The canvas on the CPU").
+  // Rounding a coordinate to the nearest float errs by at most kUnit / 2 * M. Errors of double
+  // arithmetic are smaller. On the CPU, edges of a proxy are compared with pixel centres in floats,
+  // which adds at most 3.01 kUnit * M (docs/budget.md, "The canvas on the CPU").
   b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
-  // Computing in double displaces a point by at most e = kMaxDoubleError along each axis. Its
-  // distance from the pixel's centre, at most s = sqrt(2)/2 before, is then at most
-  // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) (docs/budget.md, "double").
+  // Computing in double displaces a point by at most e = kMaxDoubleError along each axis. If the
+  // point was at most s = sqrt(2)/2 from the pixel's centre, its distance is now at most sqrt((s +
+  // sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
   // docs/budget.md, "vertex". Errors in units of kUnit * M: product with 2/viewport (1), division
   // by w (2.5), and product with viewport/2 (1). In units of kUnit * (M + viewport/2): sum with the

@@ -17,7 +17,7 @@ Regions find_regions(const Scene& scene, const RegionRules& rules) {
 
   std::vector<std::uint32_t> objects(scene.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
-  // box_join() also works on objects. Here each object is one item and its own owner.
+  // Calls box_join() on objects: each object is one item and its own owner.
   std::vector<std::vector<std::uint32_t>> partners(objects.size());
   for (const TrianglePair& pair : box_join(out.object_boxes, objects, objects)) {
     partners[pair.a].push_back(pair.b);

@@ -13,7 +13,7 @@ namespace farcull {
 namespace {
 
 // Returns the axes of a view along `depth`. If `depth` is a coordinate axis, the image axes are the
-// other two coordinate axes, so that the map multiplies exactly.
+// other two coordinate axes, so that all elements are 0, 1 or -1.
 Eigen::Matrix3d rows_for(const Vec3& depth) {
   Eigen::Matrix3d rows;
   for (int axis = 0; axis < 3; ++axis) {
@@ -157,8 +157,8 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
                 .hi = {}};
   double error = 0;
 
-  // Centres the window on the middle of the image of the regions. In an oblique view, this is not
-  // the image of the centre of `world`.
+  // Centres the window on the middle of the image of the regions. In an oblique view, the centre of
+  // `world` may have its image elsewhere.
   const Box rough = image(view.rows, window.origin, regions, error);
   if (!std::isfinite(error)) return std::nullopt;
   const bool axis_aligned = (view.rows.array() == 0).count() == 6;
@@ -178,7 +178,7 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   error = 0;
   const Box px = image(window.map, window.origin, regions, error);
   if (!(error <= kMaxDoubleError)) return std::nullopt;
-  // 2^-40 covers the part of the rounding errors of these sums that `error` does not cover.
+  // The additional 2^-40 px cover rounding errors of these sums, which `error` does not include.
   window.lo = px.lo.array() - (1 + 0x1p-40);
   window.hi = px.hi.array() + (1 + 0x1p-40);
   const auto side = [&](int i) {
@@ -192,9 +192,9 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
 
 namespace {
 
-// Sets `out` to the part of `in` with sign * p[axis] <= sign * plane. Returns false if `out` has no
-// room for it. A convex polygon gains at most one corner. But rounding can put corners of a thin
-// triangle on alternating sides of the plane. Each change of sides then adds a corner.
+// Sets `out` to the part of `in` with sign * p[axis] <= sign * plane. Returns false if `out` has
+// too few corners. A convex polygon gains at most one corner. But rounding can put corners of a
+// thin triangle on alternating sides of the plane. Each change of sides adds a corner.
 bool clip_plane(const Patch& in, Patch& out, int axis, double plane, double sign) {
   const int room = static_cast<int>(out.corners.size());
   out.count = 0;

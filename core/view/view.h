@@ -1,6 +1,6 @@
-// Orthographic views and pixel space. In pixel space all three coordinates are in pixels. x and y
-// are relative to the centre of the window; z is the depth (smaller is nearer). A view is an affine
-// map computed in double, with a bound of each point's rounding error. Triangles are clipped
+// Defines orthographic views and pixel space. In pixel space all three coordinates are in pixels. x
+// and y are relative to the centre of the window; z is the depth (smaller is nearer). A view is an
+// affine map computed in double, with a bound of each point's rounding error. Triangles are clipped
 // conservatively to a window's region, in pixel space and in double.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Divides the grid into blocks of cells, level by level. Each block lists the triangles that can
-// matter to its cells. Its parts form the next level and have shorter lists. A level reads only
-// results of earlier levels, so the answer does not depend on the number of threads.
+// affect its cells. The parts of a block are on the next level and have shorter lists. A level
+// reads only results of earlier levels, so the answer does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -73,13 +73,13 @@ inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, L
   }
 }
 
-// The distance of an object from a point: the least values of GridDistance over its triangles.
+// The distance of an object from a point: the least values of GridDistance of its triangles.
 struct Near {
   std::uint32_t object;
   float computed, lower, upper;
 };
 
-// The distances of a point from triangles. The triangles must be sorted by object.
+// The distances of a point from triangles and objects. The triangles must be sorted by object.
 class Distances {
  public:
   void compute(const GridPoint& point, std::span<const std::uint32_t> ids,

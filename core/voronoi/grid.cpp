@@ -1,4 +1,4 @@
-// The grid of the diagram, and triangles in its units.
+// Computes the grid of the discrete Voronoi diagram. Converts triangles to units of the grid.
 #include <algorithm>
 
 #include "core/base/parallel.h"
@@ -7,7 +7,7 @@
 namespace farcull {
 namespace {
 
-// Returns the next larger double, since the grid rounds outward.
+// Returns the next larger double, for results that must not be rounded down.
 double up(double x) { return std::nextafter(x, HUGE_VAL); }
 
 }  // namespace
@@ -32,8 +32,8 @@ VoronoiGrid voronoi_grid(const Scene& scene, int resolution) {
     if (box.lo[k] < box.hi[k]) largest = std::max({largest, -box.lo[k], box.hi[k]});
   }
   if (!(largest > 0)) return out;
-  // 2^exponent scales `largest` into [1, 2). A coordinate that becomes subnormal errs by less than
-  // 2^-1074, far less than a cell, which is at least 2^-53 / kVoronoiLargest.
+  // 2^exponent scales `largest` into [1, 2). Subnormal results err by less than 2^-1074, far less
+  // than a cell, which is at least 2^-53 / kVoronoiLargest.
   out.exponent = -std::ilogb(largest);
   Vec3 extent = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {

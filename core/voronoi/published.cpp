@@ -88,8 +88,8 @@ Exactly nearest_corner(std::span<const std::uint32_t> ids,
 
 // Returns true only if every point of the block is nearer to `corner` than to all triangles `ids`
 // of another object, in exact and in computed distances. corner: nearest_corner() of an object.
-// `margin` bounds the error of a difference of two squared distances. It is the distances' sum,
-// each at most 1.74 N, times that of their errors. Arithmetic in double errs by far less.
+// `margin` bounds the error of a difference of two squared distances. It is the sum of the
+// distances (at most 1.74 N each) times the sum of their errors. Errors of double are far smaller.
 bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
                const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
   const double margin =
@@ -110,7 +110,7 @@ class Published {
 
   Found nothing() const { return {}; }
 
-  // Computes distances from the centre of one cell. They bound those from the block's other cells.
+  // Computes distances from the middle cell's centre, which bound those from the other cells.
   void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
             Found& found, Level& below) const {
     GridPoint centre;
@@ -163,13 +163,13 @@ class Published {
   // An object that may be one of the two nearest to a cell.
   struct Candidate {
     const Near* near;
-    std::size_t dominators = 0;  // how many other candidates dominate it
+    std::size_t dominators = 0;  // number of other candidates that dominate this one
     std::size_t by = 0;          // index of one dominator
   };
 
   // Returns, ascending, the objects that may be among the two nearest to a cell of the block.
-  // Returns none if all pairs that these cells may name have been named. slack: how much the
-  // difference of two distances can change from the central cell to another cell.
+  // Returns none if all pairs that these cells may name have been named. slack: largest change of a
+  // difference of two distances from the middle cell to another cell.
   std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
                                            const Distances& distances, float slack) const {
     const auto least = distances.least_upper<3>();
@@ -238,7 +238,7 @@ class Published {
   const std::vector<GridTriangle>& triangles_;
   int longest_;
   float error_ = voronoi_error(longest_);
-  std::vector<ObjectPair> pairs_;  // found on the levels above
+  std::vector<ObjectPair> pairs_;  // pairs that earlier levels found
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// Computes the reliable neighbours (docs/voronoi.md, theorem V9). A cell keeps a triangle if it can
-// hold an end of a shortest segment whose middle lies in the cell. With H half the diagonal of a
-// block of cells, filtered() drops a triangle in two cases: its distance from the block's centre is
-// more than 2 H above that of the nearest triangle, or more than H plus half the segment's length.
+// Computes the reliable neighbours (docs/voronoi.md, theorem V9). A cell keeps each triangle that
+// can hold an end of a shortest segment whose middle lies in the cell. Let H be half the diagonal
+// of a block of cells. filtered() drops a triangle if its distance from the block's centre is more
+// than 2 H above the least distance, or above H plus half the segment's length.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -86,7 +86,7 @@ class Reliable {
     float lower;
   };
 
-  // Returns half the diagonal of the block, rounded up.
+  // Returns half the diagonal of the block, rounded up. Multiplies it by the widening for a cell.
   float half_of(const Block& block) const {
     float square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -107,14 +107,14 @@ class Reliable {
     }
   }
 
-  // An end of the object's shortest segment is at most this far from the block's centre.
+  // Bounds the distance of the block's centre from the ends of the object's shortest segment.
   float limit_of(std::uint32_t object, float half) const { return 0.5f * upper_[object] + half; }
 
-  // Returns the triangles that may hold an end of a segment; none if all are of one object.
+  // Returns the triangles that may hold an end of a segment, or none if all belong to one object.
   std::vector<Kept> filtered(const Distances& distances, std::span<const std::uint32_t> ids,
                              float half) const {
     const float nearest = distances.least_upper<1>()[0].first + 2 * half;
-    // The two largest limits and their objects, of the objects that may have an end in this list.
+    // The two largest limits, with their objects, among objects that may have an end in this list.
     std::array<std::pair<float, std::uint32_t>, 2> largest;
     largest.fill({-kInfinite, kNone});
     for (const Near& near : distances.objects()) {

@@ -1,4 +1,4 @@
-// The discrete Voronoi diagram of objects, and the neighbours that it finds.
+// Computes the discrete Voronoi diagram of objects, and finds neighbouring objects in it.
 //
 // As published: Sud, Govindaraju, Gayle, Kabul, Manocha (Fast Proximity Computation Among
 // Deformable Models using Discrete Voronoi Diagrams, SIGGRAPH 2006), after Hoff, Keyser, Lin,
@@ -27,8 +27,8 @@
 
 namespace farcull {
 
-// The grid of the discrete Voronoi diagram, triangles in its units, and the distance of a point
-// from a triangle: in float, with two bounds of the exact distance.
+// The code below defines the grid of the discrete Voronoi diagram, triangles in units of the grid,
+// and the distance of a point from a triangle, in float with two bounds of the exact distance.
 //
 // In units of the grid, a coordinate x of the scene is (x 2^exponent - lo) / cell. The cells are
 // the unit cubes [i, i + 1]. The power of two keeps all finite doubles in range.
@@ -82,7 +82,7 @@ std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& 
 /// A point in units of the grid.
 using GridPoint = std::array<float, 3>;
 
-/// Returns 32 uN, where N is the number of cells along the longest side.
+/// Returns 32 uN (u = 2^-24). longest: N, the number of cells along the longest side.
 inline float voronoi_error(int longest) { return 0x1p-19f * static_cast<float>(longest); }
 
 /// lower <= the exact distance <= upper. computed: the distance that the published form compares.
@@ -111,7 +111,7 @@ inline float part(float numerator, float denominator) {
   return t > 0 ? std::min(t, 1.0f) : 0.0f;
 }
 
-// The shortest vector n, of those added, from a point of the triangle to c. square: n . n.
+// The shortest of the added vectors from a point of the triangle to c. square: n . n.
 struct Shortest {
   GridPoint n;
   float square;
@@ -130,8 +130,8 @@ inline GridPoint to_edge(const GridPoint& c, const GridPoint& q, const GridPoint
   return minus(c, {q[0] + t * along[0], q[1] + t * along[1], q[2] + t * along[2]});
 }
 
-// Projects c on the face's plane. If the projection is in the triangle, adds the vector from there
-// to c.
+// Projects c on the face's plane. If the projection is in the triangle, adds the vector from the
+// projection to c.
 inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e, const GridPoint& f,
                      Shortest& shortest) {
   const GridPoint normal = cross(e, f), from = minus(c, q);
@@ -146,7 +146,7 @@ inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e,
 
 }  // namespace grid_distance
 
-/// Returns the distance of c from the triangle. error: voronoi_error() of the grid.
+/// Returns the distance of c from the triangle, with bounds. error: voronoi_error() of the grid.
 inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle, float error) {
   using namespace grid_distance;
   const auto& q = triangle.corners;
@@ -167,20 +167,20 @@ inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle
 struct VoronoiOptions {
   int resolution = 64;  // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   /// The reliable form widens each cell by this many half diagonals of the cell, 0 to 1. The proof
-  /// needs 1. A smaller value loses neighbours.
+  /// needs 1. With a smaller value, neighbours may be lost.
   double widening = 1;
   unsigned threads = 0;                               // 0: one per core; changes no answer
-  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // limit for reliable_neighbours()
+  std::uint64_t most_pairs = std::uint64_t{1} << 27;  // limit of pairs in reliable_neighbours()
 };
 constexpr int kVoronoiLargest = 1 << 14;
 
 struct VoronoiCounts {
-  std::array<int, 3> cells{};   // of the grid
+  std::array<int, 3> cells{};   // cells of the grid along each axis
   std::uint64_t blocks = 0;     // blocks whose distances were computed
   std::uint64_t distances = 0;  // computed distances of a point from a triangle
 };
 
-/// The result of a form of the diagram. Objects without triangles have no neighbours.
+/// The result of the published or the reliable form. Objects without triangles have no neighbours.
 struct VoronoiNeighbours {
   /// Pairs of objects, sorted, distinct. In the published form, a pair has the two objects nearest
   /// to some cell; of objects at equal distances in float, those with the lowest indices. In the

@@ -1,4 +1,4 @@
-// Options of `farcull bench`, and its run.
+// Implements the command `farcull bench`: defines its options, and runs the measurement.
 #include <limits>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
-// Reads certificates, scenes and lists of pairs. Prints the verdict of the checker in
-// verify/certificate.
+// `farcull check` reads certificates, scenes and lists of pairs. It prints the verdict of the
+// checker in verify/certificate.
 #include "experiments/command/command.h"
 
 #include <fmt/format.h>
@@ -63,8 +63,8 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
-// Returns the end of an error message: the meshes in the order that gives the certificate's hash.
-// Returns "" if no order gives this hash, or if there are more than four meshes (24 orders).
+// Returns the end of a message: the meshes in another order, in which the scene has this hash.
+// Returns "" if no other order gives this hash. Tries at most four meshes, which have 24 orders.
 std::string order_of(const std::vector<std::string>& meshes, const Scene& scene,
                      const std::string& hash) {
   const std::size_t count = meshes.size();
@@ -110,7 +110,7 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
     const auto words = [&](const TakeWord& take) { give_words(scene, take); };
     check_again(arguments, {arguments.certificate}, words, status);
   }
-  // The record is written last, so that no record is written if the two checkers disagree.
+  // The record is written last: check_again() throws if the two checkers disagree.
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   return status;
 }
@@ -164,7 +164,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     self = self || has_self(scene);
     ignores = ignores || !scene.ignored.empty();
-    // All frames are checked with one clearance, that of the first frame's certificate.
+    // If no clearance was given, all frames use the clearance of the first certificate, or 0.
     if (!clearance) clearance = certificate ? certificate->clearance : 0;
     const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
@@ -252,7 +252,7 @@ class CheckCommand {
     to.pairs = pairs_.value_or("");
     if (frames_) to.frames = parse_frames(*frames_);
     if (tiles_) to.tiles = FrameRange{1, static_cast<long>(parse_tiles(*tiles_))};
-    // Exchanges certificate and scene if the scene comes first on the command line.
+    // The scene may come first on the command line. Certificate and scene are then exchanged.
     const auto is_certificate = [&](const std::string& path) {
       const std::string file = numbered_files(path, to.tiles ? to.tiles : to.frames).front();
       std::string text(100, ' ');
@@ -266,7 +266,7 @@ class CheckCommand {
       to.certificate = std::move(to.scene.names.back());
       to.scene.names.pop_back();
     }
-    // The first name is taken for a certificate unless it is that of a mesh.
+    // A first name with the extension of a mesh is part of the scene, and not a certificate.
     const bool mesh = has_mesh_extension(to.certificate);
     if (!pairs_ && mesh) {
       throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

@@ -1,5 +1,5 @@
-// Checks certificates of tiles one after the other. Checks that the tiles cover the scene. The
-// sorted rows of all tiles are the proved list.
+// Checks the certificates of the tiles of a scene, and that the tiles cover the scene. The proved
+// list consists of the rows of all tiles, sorted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A row of a list: the numbers of its objects and triangles, and its line of text.
+// A row of a list of pairs: the numbers of both objects and triangles, and the line of text.
 using ListRow = std::pair<std::array<std::uint64_t, 4>, std::string>;
 
 ListRow row_of(const PairListRows& rows, const TrianglePair& pair) {
@@ -40,13 +40,13 @@ struct CheckedTile {
   std::string file;
   Tile tile;
   double clearance = 0;
-  CheckResult result;  // without its list `meeting`
-  std::string pair;    // the pair that refutes the certificate, by its numbers in the scene
+  CheckResult result;  // its list `meeting` is empty
+  std::string pair;    // names the pair that refutes the certificate, if there is one
 };
 
 // Returns the reason why the tiles do not cover the scene. Returns "" if each tile begins where the
-// previous tile ends, the first tile has no lower bound, and the last tile has no upper bound. Then
-// each pair belongs to one tile (docs/tiles.md).
+// previous tile ends, the first tile has no lower bound, and the last tile has no upper bound. Each
+// pair then belongs to exactly one tile (docs/tiles.md).
 std::string not_whole(const std::vector<CheckedTile>& tiles) {
   double place = -HUGE_VAL;
   for (const CheckedTile& tile : tiles) {
@@ -187,7 +187,7 @@ int check_tiles(const CheckArguments& arguments, const std::vector<std::string>&
     check_again(arguments, files, words, certified);
   }
   if (!arguments.json.empty()) {
-    // The keys are those of check_json(), which is for one certificate.
+    // The keys are the same as in check_json(), which makes the record of one certificate.
     write_json({{"certificate", clean_name(arguments.certificate)},
                 {"scene",
                  {{"name", census.name},

@@ -50,10 +50,10 @@ constexpr const char* kExamples =
     "Exit status 0: no pair has a verdict of --fail-on, in any frame. 1: one has; also if a pair\n"
     "was not examined, since a part has no triangles. 2: the input or an option is wrong.";
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // limit for a file of --compare
-constexpr const char* kNoTriangles = "the mesh has no triangles";  // load_mesh() gives this reason
+constexpr std::size_t kMostBytes = std::size_t{1} << 31;           // largest file of --compare
+constexpr const char* kNoTriangles = "the mesh has no triangles";  // Error::reason of load_mesh()
 
-// Reads the parts. Each mesh without triangles becomes an empty part. Empty parts follow all
+// Reads the parts. A mesh without triangles becomes an empty part. Empty parts come after all
 // others.
 Scene read_parts(SceneArguments files) {
   std::vector<std::string> empty;
@@ -70,7 +70,7 @@ Scene read_parts(SceneArguments files) {
       if (error.reason != kNoTriangles || at == files.names.end() || files.names.size() < 2) throw;
       empty.push_back(*at);
       files.names.erase(at);
-      take_reading_notes();  // drops the notes; the next attempt gives them again
+      take_reading_notes();  // discards the notes: the next attempt repeats them
     }
   }
 }
@@ -222,8 +222,8 @@ class ClashCommand {
     return out.empty() ? usual : out;
   }
   bool only_new() const { return std::ranges::count(split_list(fail_on_.value_or("")), "new") > 0; }
-  // Moves the scene's ignored pairs into the options, and adds --ignore and --only. lacking: what
-  // to do about names that are not in the scene.
+  // Moves the scene's ignored pairs into the options, and adds the pairs of --ignore and --only.
+  // lacking: what to do about names that are not in the scene.
   void prepare(Scene& scene, ClashOptions& options, UnknownName lacking) const {
     if (scene_.names.size() == 1 && fs::is_directory(scene_.names[0]))
       scene.name = clean_name(fs::canonical(scene_.names[0]).filename().string());

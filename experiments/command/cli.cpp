@@ -24,7 +24,7 @@
 
 namespace farcull {
 
-// `farcull help` prints the text of --help, or a compiled-in file of docs/help.
+// `farcull help` prints the --help of a command, or a file of docs/help that is compiled in.
 
 namespace {
 
@@ -91,7 +91,7 @@ std::string fault(const std::exception& error) {
          "; report it with the command line";
 }
 
-// Turns an error of CLI11 into an Error with a remedy. app: the state after parsing.
+// Turns an error of CLI11 into an Error with a remedy. app: the program after parsing failed.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = "farcull";
@@ -154,8 +154,8 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   return Error(name, text, help);
 }
 
-// If the error is about standard output, returns an Error whose remedy names the option that writes
-// there.
+// Returns the error. If standard output failed, the remedy names the option that was given `-`, and
+// says to name a file.
 Error with_option(const Error& error, int argc, char** argv) {
   constexpr std::array kOutputs = {"--json", "--csv", "--pairs", "--certificate", "-o", "--output"};
   if (error.where != "standard output") return error;
@@ -224,14 +224,14 @@ Command add_help(CLI::App& app) { return declare<HelpCommand>(app); }
 int command_line(int argc, char** argv) {
   prepare_output();
   spell_parameters(option_word);
-  // Keeps Mesa from warning about devices that it tries. farcull prints a message of its own.
+  // Stops Mesa's warnings about devices that it tries. farcull prints its own messages.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
-  // The threads of llvmpipe may corrupt memory of this process (docs/drivers.md). No thread runs
-  // yet, so it is safe to change the environment.
+  // Stops llvmpipe from starting threads, which may corrupt this process's memory
+  // (docs/drivers.md). setenv() is safe here, since no other thread runs yet.
   ::setenv("LP_NUM_THREADS", "0", 0);
   const Interruptible interruptible;
   try {
-    // This guard is for the main thread. core/base/parallel.h makes one for each thread it starts.
+    // This guard is for the main thread. core/base/parallel.h makes a guard for each thread.
     const FloatingPointGuard guard;
     return dispatch(argc, argv);
   } catch (const Error& error) {

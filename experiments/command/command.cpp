@@ -27,7 +27,7 @@
 
 namespace farcull {
 
-// ---- all uses of CLI11 by the commands, so that its templates are compiled once ----
+// ---- functions that use CLI11, whose templates take seconds to compile ----
 
 DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
   DeclaredCommand out;
@@ -83,7 +83,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
     before += (before.empty() ? "" : " ") + command->get_name();
     command = found.front();
   }
-  // App::help() cannot be used: it would describe the parsed command, which is `help`.
+  // App::help() would describe the parsed command, which is `help`.
   return command->get_formatter()->make_help(
       command, before.empty() ? command->get_name() : before + " " + command->get_name(),
       CLI::AppFormatMode::Normal);
@@ -103,8 +103,8 @@ constexpr const char* kStandardOutput = "standard output";
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
-  std::string name;      // empty if the file exists
-  bool regular = false;  // true for a regular file, and if the file does not exist yet
+  std::string name;      // name of a missing file; empty if the file exists
+  bool regular = false;  // true for a regular or a missing file
   auto operator<=>(const Identity&) const = default;
 };
 
@@ -116,7 +116,7 @@ fs::path made_by(fs::path path) {
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
-    path = path.parent_path() / target;  // the result is `target` if that is absolute
+    path = path.parent_path() / target;  // an absolute target replaces the path
   }
   return path;
 }
@@ -185,7 +185,7 @@ void print(const std::string& text) { write_output("-", wrapped(text)); }
 void complain(const std::string& message) { std::fputs(complaint(message).c_str(), stderr); }
 
 void say_notes() {
-  static std::set<std::string> said;  // a file may be read several times, as for frames
+  static std::set<std::string> said;  // several frames may give the same note
   for (const std::string& note : take_reading_notes()) {
     if (said.insert(note).second) complain(note);
   }
@@ -242,7 +242,7 @@ void TerminalProgress::clear() {
   if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
 }
 
-// Cuts the line to the width of the terminal, since a wrapped line could not be overwritten.
+// Cuts the line to the width of the terminal, since \r cannot go back over a wrapped line.
 void TerminalProgress::show(std::string line) {
   if (const unsigned columns = terminal_columns(stderr); columns > 1)
     line = line.substr(0, columns - 1);
@@ -289,7 +289,7 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 }
 
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::map<Identity, const NamedFile*> written;  // per file: the first output that writes it
+  std::map<Identity, const NamedFile*> written;  // the first output to each file
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
     if (identity && identity->regular && identity->name.empty())
@@ -340,7 +340,7 @@ bool Outputs::to_stdout() const {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames) {
   std::vector<NamedFile> files;
-  std::vector<std::string> to_try;  // the first file of each path
+  std::vector<std::string> to_try;  // the first file of each output path
   for (const auto& [option, path, example] :
        {std::tuple("--json", &outputs.json, "result.json"),
         std::tuple("--pairs", &outputs.pairs, "result.csv"),
@@ -350,7 +350,7 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("--html", &outputs.page, "page.html"),
         std::tuple("--figure", &outputs.figure, "figure.svg")}) {
     if (!*path) continue;
-    // Standard output gets one name, so that it is written through one file only.
+    // `/dev/stdout` counts as `-`, so that only one stream writes to standard output.
     if (**path == "/dev/stdout") *path = "-";
     if ((*path)->empty())
       throw Error(option, "the path is empty", "name a file, or - for standard output");

@@ -1,6 +1,6 @@
-// The commands of the program, and what several commands share: options, files, outputs, progress.
-// Each add_...() declares the options of a command and returns the Command. Only command.cpp and
-// cli.cpp include <CLI/CLI.hpp>, which takes seconds to compile.
+// The commands of the program, and functions that several commands use: for options, files, outputs
+// and progress. Each add_...() declares a command's options and returns the Command. Only
+// command.cpp and cli.cpp include <CLI/CLI.hpp>, which takes seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -39,15 +39,15 @@ using Text = std::optional<std::string>;  // value of an option; nullopt if it w
 
 enum class Need : std::uint8_t { may, must };
 
-/// An option, or an argument if the name has no dashes. Parsing the command line sets `value`. An
-/// option with bool* is a flag. `type` stands for the value in the help.
+/// An option, or a positional argument if the name has no dashes. Parsing writes to the variable
+/// that `value` points to. A bool* makes the option a flag. The help shows `type` for the value.
 struct OptionRow {
   std::string name;
   std::variant<bool*, Text*, std::string*, std::uint64_t*, std::vector<std::string>*> value;
   const char* type = "";
   std::string help;
   Need need = Need::may;
-  const char* group = "";  // heading of the option in the help; empty: the common heading
+  const char* group = "";  // heading above the option in the help; "": the default
 };
 using Rows = std::vector<OptionRow>;
 inline Rows operator+(Rows first, const Rows& then) {
@@ -55,22 +55,22 @@ inline Rows operator+(Rows first, const Rows& then) {
   return first;
 }
 
-/// The text at the end of a help. A function is called when the help is printed.
+/// The text at the end of a command's help, or a function that returns this text.
 using Footer = std::variant<const char*, std::string, std::function<std::string()>>;
 
-/// Declares a subcommand of `parent`, a command or the program. The subcommand lives as long as
-/// `parent`.
+/// Declares a subcommand of `parent`, which is the program or a command. `parent` owns the
+/// subcommand.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
                       const Rows& options, const Footer& footer);
-/// Allows at most one of the subcommands of this command.
+/// Allows at most one subcommand of this command on a command line.
 void allow_one_command(CLI::App& command);
 /// True if the parsed command line names this command.
 bool given(const CLI::App& command);
 
-/// An option as the help shows it, or an argument if `names` is empty.
+/// An option as the help shows it, or a positional argument if `names` is empty.
 struct DeclaredOption {
   std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
-  std::string type;                // the word for the value in the help; empty for a flag
+  std::string type;                // the help shows this word for the value; empty for a flag
   bool flag = false;
 };
 /// A declared command with all its subcommands.
@@ -80,7 +80,7 @@ struct DeclaredCommand {
   std::vector<DeclaredOption> arguments;  // in the order of the command line
   std::vector<DeclaredCommand> commands;
 };
-/// parents: the names of the commands above `app`.
+/// Describes `app` and its subcommands. parents: names of the commands above `app`.
 DeclaredCommand declared(const CLI::App& app, const std::string& parents = "");
 /// Returns the text of --help for the command with these names, or for the program if there are no
 /// names. Returns "" if there is no such command.
@@ -101,7 +101,7 @@ struct Command {
   std::function<int()> run;
 };
 
-/// Makes a Command from a class that has its options as members, and add_to() and run().
+/// Makes a Command from a class with the member functions add_to() and run().
 template <class Class, class... Arguments>
 Command declare(CLI::App& parent, const Arguments&... arguments) {
   const auto command = std::make_shared<Class>(arguments...);
@@ -127,8 +127,8 @@ Command add_suite(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 
-// A command of `farcull experiment`. Exit status 1: there was a violation with the budget radius or
-// a larger radius.
+// Declares `farcull experiment lemma`. Exit status 1: a lemma is violated, although the radius is
+// at least the budget radius.
 Command add_lemma(CLI::App& experiment);
 
 inline constexpr const char* kResultsFolder = "farcull-results";
@@ -136,9 +136,9 @@ inline constexpr const char* kResultsFolder = "farcull-results";
 // ---- options, files, outputs and progress ----
 
 inline constexpr const char* kVersion = "farcull 0.1";
-inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
+inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;
 
-/// A file as the command line names it.
+/// A file that the command line names.
 struct NamedFile {
   std::string by;    // the option or argument: "--json", "SCENE"
   std::string path;  // "-": standard output
@@ -149,37 +149,37 @@ struct NamedFile {
 std::vector<std::string> numbered_files(const std::string& path,
                                         const std::optional<FrameRange>& range);
 
-/// Returns the files that load_scene() reads for these arguments or, with a range, FrameSource:
+/// Returns the files that load_scene() reads for these arguments (with a range, FrameSource):
 /// - the scene file and its meshes, or the mesh files; for a numbered file, one file per frame;
-/// - the meshes of mesh_folder() if a built-in scene needs them, or if there are no arguments (then
-/// for all built-in scenes).
-/// NamedFile::by is SCENE. A file that cannot be read is no error here.
+/// - the meshes in mesh_folder(), if there are no arguments or if a built-in scene needs these
+/// meshes.
+/// NamedFile::by is SCENE. Unreadable files are no error here.
 std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
                                    const std::optional<FrameRange>& range = {});
 
-/// Throws Error, which names the two options, if an output is one of the inputs. Files are compared
-/// by device and inode, with links followed.
+/// Throws an Error that names both options if an output file is also an input file. Files are
+/// compared by device and inode, with links followed.
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-/// Calls require_not_read(). Also throws Error if two outputs are one file, even a file that does
-/// not exist yet. The file behind standard output counts as an output. A terminal, /dev/null or
-/// another file that is not regular may be an output several times, but "-" only once.
+/// Calls require_not_read(). Also throws Error if two outputs are the same file, even if the file
+/// does not exist yet. Standard output counts as an output. Several outputs may go to a file that
+/// is not regular, such as a terminal or /dev/null, but "-" may be given only once.
 void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
 
-/// Writes text for people to standard output, with its long lines wrapped (text_table.h).
+/// Prints text on standard output, with long lines wrapped (text_table.h).
 void print(const std::string& text);
 
-/// Prints a failure on standard error as one paragraph. Lines after the first are indented by nine
-/// blanks. Replaces control characters, which paths may have.
+/// Prints a message on standard error as one paragraph. Lines after the first are indented by nine
+/// blanks. Control characters, which a path may contain, are replaced.
 void complain(const std::string& message);
 
-/// Prints each line of take_reading_notes() once on standard error.
+/// Prints the notes of take_reading_notes() on standard error, except notes printed before.
 void say_notes();
 
-/// Calls load_scene() and say_notes(), and make_self() if `self` is set.
+/// Calls load_scene() and say_notes(). If `self` is true, also calls make_self().
 Scene read_scene(const SceneArguments& arguments, bool self = false);
-/// Returns a function that reads the scene part by part (stream_scene()), and calls say_notes(),
-/// and make_self() if `self` is set, for each part. The arguments must outlive the function.
+/// Returns a function that reads the scene part by part (stream_scene()). For each part it calls
+/// say_notes(), and make_self() if `self` is true. The arguments must outlive the function.
 std::function<std::vector<ObjectPair>(const TakePart&)> scene_in_parts(
     const SceneArguments& arguments, bool self);
 
@@ -189,17 +189,17 @@ void complain_broken(const std::string& message);
 /// Throws Error if there is nothing to test, since 0 pairs would look like a scene without
 /// collisions. command: a command line that tests an object against itself.
 void require_pairs(const NothingToTest& nothing, const std::string& command);
-/// Throws Error if no pair of objects is left to test: the scene has two objects or more, tests
-/// none against itself, and `ignored` and scene.ignored together hold all pairs. ignored: a result
-/// of in_order().
+/// Throws Error if no pair of objects is left to test: the scene has two objects or more, no object
+/// is tested against itself, and `ignored` and scene.ignored together hold all pairs. ignored: a
+/// result of in_order().
 void require_asked(const Scene& scene, const std::vector<ObjectPair>& ignored);
-/// Returns the command followed by the words of a scene, quoted for a shell.
+/// Returns the command followed by the arguments of the scene, quoted for a shell.
 std::string command_with(const std::string& command, const SceneArguments& scene);
 
-/// One line on standard error that each update overwrites. Nothing is printed without a terminal.
+/// One line on standard error, which each step overwrites. Prints nothing without a terminal.
 class TerminalProgress {
  public:
-  /// first: text that is shown at once.
+  /// Returns a function that shows a step; null without a terminal. first: text shown at once.
   Progress callback(const char* first = nullptr);
   void clear();
   TerminalProgress() = default;
@@ -213,7 +213,7 @@ class TerminalProgress {
   bool shown_ = false;
 };
 
-/// The outputs of a command besides the table.
+/// The paths of a command's outputs, besides the printed table. "-": standard output.
 struct Outputs {
   Text json = {};
   Text pairs = {};
@@ -226,15 +226,15 @@ struct Outputs {
   bool to_stdout() const;
 };
 
-/// Checks the outputs of a command that reads `inputs`, and returns them. Throws Error for what is
-/// known to fail before the command runs: bad paths, and what require_apart() or check_output()
-/// refuses. With frames there is one certificate per frame, so its path must have a place for a
-/// number. Without frames, the path must have no such place.
+/// Checks the outputs of a command that reads `inputs`, and returns the outputs. Throws Error for
+/// bad paths, and for paths that require_apart() or check_output() refuses. With frames, there is
+/// one certificate per frame, so the path of the certificate must have a place for a number.
+/// Without frames, this path must have no place for a number.
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
-/// Reads a number from `least` to `most`. For any other text, throws Error naming the option, with
-/// the reason "'TEXT' is WHAT".
+/// Parses a number from `least` to `most`, both included. Throws Error for any other text: the
+/// error names the option, and the reason is "'TEXT' is WHAT".
 template <class Value>
 Value number_of(const char* option, const std::string& text, const std::string& what, Value least,
                 Value most, const std::string& remedy) {
@@ -250,23 +250,23 @@ std::size_t word_of(const char* option, const Text& text, const std::vector<std:
 void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
                   const std::string& reason, const std::string& remedy);
 
-/// Throws Error if a name of the scene is empty.
+/// Throws Error if an argument that names the scene is empty.
 void check_scene(const std::vector<std::string>& scene);
-/// Returns the seed if the scene is a random built-in scene.
+/// Returns the seed of a random built-in scene; nullopt for any other scene.
 std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
 
-/// The options of the methods on a command line. run_options() is the table of these options.
+/// Options of methods on a command line, and their values. run_options() lists these options.
 class MethodOptions {
  public:
-  /// Returns rows for the named options, in the order of the table. If there are no names, returns
-  /// rows for all options.
+  /// Returns rows for the named options, in the order of run_options(). Without names, returns rows
+  /// for all options.
   Rows rows(const std::vector<std::string>& names = {});
   GivenOptions given() const;
   const Text& text(const std::string& name) const { return texts_.at(name); }
   bool has(const std::string& name) const { return texts_.at(name) || flags_.at(name); }
 
  private:
-  // One entry per option of the table. The addresses must not change, since rows point at entries.
+  // One entry per option of run_options(). Entries must not move: rows() returns pointers to them.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
 };
@@ -276,10 +276,10 @@ double parse_clearance(const std::string& text);
 /// Implements --self: every object of the scene is tested against itself.
 void make_self(Scene& scene);
 
-/// Returns a text for complain(): the guarantee that the run broke.
+/// Returns a message for complain(): how many colliding pairs the run culled.
 std::string missed(const Record& record);
 
-/// Returns the value of --device; empty if it was not given. Throws Error if "" was given.
+/// Returns the value of --device, or "" without this option. Throws Error if the value is empty.
 std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
@@ -302,23 +302,23 @@ inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";
 
-// `farcull check`: checks a certificate, or a list of pairs, against its scene.
+// `farcull check` checks a certificate or a list of pairs against the scene.
 
 struct CheckArguments {
-  std::string certificate;  // a path, with a place for a number if there are frames; "": none
+  std::string certificate;  // a path, with a place for the number of a frame or tile; "": none
   SceneArguments scene;
-  std::string json = {};   // a path; "": none; "-": standard output, in place of the text
+  std::string json = {};   // a path; "": none; "-": standard output, instead of the text
   bool self = false;       // every object is tested against itself, as by run --self
   std::string pairs = {};  // the path of a list that `farcull run --pairs` wrote; "": none
-  std::optional<double> clearance = {};  // must be the certificate's clearance, if any
+  std::optional<double> clearance = {};  // world units; must equal the certificate's clearance
   std::optional<FrameRange> frames = {};
-  std::optional<FrameRange> tiles = {};  // the numbers of the tiles
-  bool verified = false;                 // true: calls check_again()
+  std::optional<FrameRange> tiles = {};  // from 1 to the number of tiles
+  bool verified = false;                 // true: also calls check_again()
 };
 
 /// Prints a verdict for each frame or tile, and one for all. Returns 0 if the certificate or the
-/// list is proved, else 1. Throws Error if a file cannot be read, and if only one of list and
-/// arguments has frames. Precondition: a certificate or a list is given.
+/// list is proved, else 1. Throws Error if a file cannot be read, or if only one of the list and
+/// the arguments has frames. Precondition: a certificate or a list is given.
 int run_check(const CheckArguments& arguments);
 
 constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;
@@ -328,14 +328,14 @@ Certificate read_certificate(const std::string& path);
 /// Replaces characters that a terminal cannot show, line by line.
 std::string clean_lines(const std::string& text);
 
-/// Is called with each word of a scene: the words that scene_hash() hashes, in the same order.
+/// A function that receives the 64-bit words of a scene, in the order in which scene_hash() hashes.
 using TakeWord = std::function<void(std::uint64_t)>;
 
 /// Runs `farcull-check-verified`, the checker that is proved in Coq (verify/certificate/coq), on
 /// the certificates and the scene. This program is in the folder of farcull or in the PATH. Prints
-/// the SHA-256 sums of the files, then the checker's output: the same sums and a verdict. words:
-/// calls its argument with each word of the scene. status: the exit status of our own checker.
-/// Throws Error if the proved checker cannot be run, or if its verdict differs.
+/// the SHA-256 sums of the files, then the output of the proved checker: the same sums and a
+/// verdict. words: calls its argument with each word of the scene. status: the exit status of our
+/// own checker. Throws Error if the proved checker cannot run, or if the two checkers disagree.
 void check_again(const CheckArguments& arguments, const std::vector<std::string>& files,
                  const std::function<void(const TakeWord&)>& words, int status);
 
@@ -344,8 +344,8 @@ void check_again(const CheckArguments& arguments, const std::vector<std::string>
 /// all tiles of the scene, in their order. Prints the verdict. Returns the status of run_check().
 int check_tiles(const CheckArguments& arguments, const std::vector<std::string>& files, bool whole);
 
-/// give_words() calls take() with all words of a scene, give_coordinates() only with those of its
-/// coordinates.
+/// give_words() calls take() with each word of a scene. give_coordinates() calls take() only with
+/// the words of coordinates.
 void give_words(const Scene& scene, const TakeWord& take);
 void give_coordinates(const Scene& scene, const TakeWord& take);
 

@@ -14,7 +14,7 @@
 namespace farcull {
 namespace {
 
-// Replaces this process by the Python program, which draws the CSV file and exits with `status`.
+// Replaces this process by a Python program, which draws `csv` to `path` and exits with `status`.
 void draw(const std::string& csv, const std::string& path, int status) {
   std::FILE* const rows = std::tmpfile();
   if (rows == nullptr || std::fwrite(csv.data(), 1, csv.size(), rows) != csv.size() ||
@@ -74,7 +74,7 @@ class CompareCommand {
     arguments.risk = !no_risk_;
     arguments.self = options_.has("self");
     options.seed = seed_of(scene_.names);
-    options.method = Method::far;  // far has all options except the clearance
+    options.method = Method::far;  // compare() sets the method of each run
     for (const auto& [name, text] : options_.given()) {
       if (run_option(name).take) take_option(name, text, options);
     }
@@ -117,7 +117,7 @@ class CompareCommand {
   }
 
  private:
-  // Throws Error if an option was given that none of the listed methods has.
+  // Throws Error if an option was given that no listed method has.
   void require_meaning() const {
     std::vector<Method> methods;
     const std::string usual = usual_methods(options_.has("clearance"), options_.has("self"));

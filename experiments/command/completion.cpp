@@ -1,6 +1,6 @@
-// Writes the script that completes command lines of farcull in a shell. The script has a table with
-// the words of each command, and with the way to complete each value. A function in the script
-// finds the command among the words of the line, skips values of options, and reads the table.
+// Writes the script that completes command lines of farcull in a shell. The script has tables of
+// the words that may follow each command and each option. A function of the script finds the
+// command in the line, skips values of options, and reads the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ std::string joined(const std::vector<std::string>& words, const char* between = 
 
 // Returns the possible values of an option or argument with this DeclaredOption::type, separated by
 // blanks. The type may be an enumeration such as "fragment|fixed", or a placeholder such as METHOD,
-// SCENE or FILE. @files stands for any file, @meshes for files with a scene, @folders for folders.
-// Empty for numbers and other types.
+// SCENE or FILE. Returns @files for any file, @meshes for mesh and scene files, @folders for
+// folders. Returns "" for numbers and other types.
 std::string completion_words(const std::string& type) {
   for (const Option& option : run_options()) {
     if (type == option.type && !option.words.empty()) return joined(option.words);
@@ -35,7 +35,7 @@ std::string completion_words(const std::string& type) {
   std::vector<std::string> words;
   if (type != "SCENE" && type != "NAME") {
     if (type.find('|') == std::string::npos) return "";
-    for (const auto word : std::views::split(type, '|')) {  // placeholders have capitals
+    for (const auto word : std::views::split(type, '|')) {  // skips placeholders (in capitals)
       const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
       if (std::ranges::none_of(word, capital)) words.emplace_back(word.begin(), word.end());
     }
@@ -51,8 +51,8 @@ void visit(const DeclaredCommand& command, const std::function<void(const Declar
   for (const DeclaredCommand& below : command.commands) visit(below, see);
 }
 
-// Returns the branches of `case "$1" in`, one per command. A branch sets the words that may
-// follow: `below` subcommands, `flags` options, `first` and `others` values of arguments.
+// Returns one branch per command for `case "$1" in`. A branch sets `below` to the subcommands,
+// `flags` to the options, `first` and `others` to values of the first and of later arguments.
 std::string table_of_words(const DeclaredCommand& program) {
   std::string out;
   visit(program, [&](const DeclaredCommand& command) {

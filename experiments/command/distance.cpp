@@ -37,7 +37,7 @@ constexpr const char* kDistanceExamples =
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
     "answer, or a wrong answer. 2: the input or an option is wrong.";
 
-// The keys of a record whose values differ between frames.
+// JSON keys of a record whose values differ between frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
 
@@ -53,8 +53,8 @@ std::string frame_row(long frame, const DistanceRecord& record) {
   return row + "\n";
 }
 
-// Returns the objects that are not closed. The record cannot say whether such an object contains
-// another object.
+// Returns the objects whose surface is not closed. The record cannot say whether such an object
+// contains another object.
 std::vector<std::uint32_t> not_closed(const Scene& scene, const DistanceRecord& record) {
   std::set<std::uint32_t> found;
   for (const Distance& d : record.distances) {

@@ -1,5 +1,5 @@
-// Probes the native canvas and the device, and prints the results. A probe of the native canvas
-// counts events that must not happen, so its bound is 0.
+// Probes the native canvas (a rasterizer on the CPU) and the device, and prints the results. A
+// probe of the native canvas counts errors, so its bound is 0.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,7 +31,7 @@ constexpr std::size_t kCases = 6000;
 constexpr std::uint64_t kPoints = 60'000;
 constexpr std::uint64_t kSeed = 1;
 
-// Probes one kernel. Half of the solids are fattened triangles; half are made from random floats.
+// Probes one kernel. Half of the solids are fattened triangles, half have random floats.
 ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
   KernelTally tally;
   std::uint64_t different = 0;
@@ -67,7 +67,7 @@ ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
 
 using Json = nlohmann::ordered_json;
 
-// Returns the device that GlContext would use for this option.
+// Returns the index of the device that GlContext would use for this value of --device.
 std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
   for (const std::string kind : {"hardware", "software"}) {
     for (const GlDevice& d : devices) {
@@ -89,7 +89,7 @@ Json devices_json(const std::vector<GlDevice>& devices) {
   });
 }
 
-// Writes a number for the table: an integer in full, any other number with three digits.
+// Formats a number for the table: an integer in full, any other number with three digits.
 std::string number(double x) {
   if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
   return fmt::format("{:.3g}", x);
@@ -242,7 +242,7 @@ void write_report(Json report, bool pass, const std::string& path) {
   write_json(report, path);
 }
 
-// Prints the results of the native canvas alone. json: a path, or "" for none.
+// Probes only the native canvas. Returns the exit status. json: path of the JSON; "": none.
 int doctor_without_gl(const std::string& json) {
   const std::vector<ProbeResult> native = native_probes();
   if (!json.empty()) {
@@ -276,7 +276,7 @@ class DoctorCommand {
     const std::string json = checked({.json = json_}, {}).json.value_or("");
     const FloatingPointGuard guard;
     if (is_cpu(device)) return doctor_without_gl(json);
-    // Refuses a missing device first, since the probes of the native canvas take seconds.
+    // Looks for the device first, since the probes of the native canvas take seconds.
     const std::vector<GlDevice> devices = GlContext::list_devices();
     const std::optional<int> chosen = choose(devices, device);
     const bool people = json != "-";

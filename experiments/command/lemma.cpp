@@ -37,7 +37,7 @@ std::string table_of(std::vector<LemmaRow> rows) {
   return out;
 }
 
-// A canvas and its session. The canvas "worst" has no session.
+// A canvas and the session that made it. The canvas "worst" has no session.
 struct LemmaCanvas {
   std::string name;  // native, gl or worst
   std::optional<Session> session;
@@ -104,8 +104,8 @@ class LemmaCommand {
     LemmaSettings settings;
     settings.points = points_;
     settings.seed = seed_;
-    // Drawn triangles are displaced by the largest error of double arithmetic. GL draws without
-    // this displacement, since GL's own errors would hide it.
+    // Displaces drawn triangles by the largest error of double arithmetic. Does not displace them
+    // for GL, since the errors of GL itself are larger.
     settings.displace = on.name != "gl";
     settings.radius = [&rule](const Budget& budget, double step) {
       return lemma_radius(rule, budget, step);

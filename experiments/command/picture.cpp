@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Reads a size such as "900x760". Rounds up to even numbers, since Window needs even sides.
+// Reads a size in px, such as "900x760". Rounds both sides up to even numbers, as Window needs.
 void parse_size(const std::string& text, int& width, int& height) {
   std::string_view rest = text;
   const std::optional<int> wide = take_number<int>(rest);
@@ -30,7 +30,7 @@ void parse_size(const std::string& text, int& width, int& height) {
   height = *high + *high % 2;
 }
 
-// Reads a method, as "far", or a method with a resolution, as "far:128".
+// Reads a method, such as "far", or a method with a resolution, such as "far:128".
 RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   RunOptions options = usual;
   const std::size_t colon = text.find(':');
@@ -108,7 +108,7 @@ PictureArguments PictureCommand::arguments() const {
   out.view = view_.value_or("");
   out.up = up_.value_or("");
 
-  RunOptions usual{.device = device_of(device_), .verify = false};  // for all panels
+  RunOptions usual{.device = device_of(device_), .verify = false};  // options of all panels
   for (const auto& [name, text] :
        {std::pair("resolution", resolution_), std::pair("radius", radius_),
         std::pair("offset", offset_), std::pair("depth", depth_)}) {

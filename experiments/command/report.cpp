@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // Returns the path of the store in the folder. Throws Error if there is no store. If the folder has
-// shards, the remedy is to merge them.
+// shards (stores of parts of a study), the error says to merge the shards.
 std::string store_of(const std::string& folder) {
   const std::string path = store_path(folder);
   if (fs::exists(path)) return path;

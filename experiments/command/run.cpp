@@ -81,7 +81,7 @@ constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
 
 namespace fs = std::filesystem;
 
-// Returns the objects with two triangles that collide with each other, ascending.
+// Returns the objects in which two triangles collide with each other, in ascending order.
 std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& record) {
   std::set<std::uint32_t> found;
   for (const auto* pairs : {&record.collisions.pairs, &record.collisions.neighbour_pairs}) {
@@ -93,9 +93,9 @@ std::vector<std::uint32_t> meeting_themselves(const Scene& scene, const Record& 
   return {found.begin(), found.end()};
 }
 
-// Returns lines about objects that may lie inside a closed object. Such an object's box lies in the
-// closed object's box, and the surfaces do not meet. Returns "" if there are no such objects,
-// or if more than a million pairs of boxes overlap.
+// Returns lines about objects that may lie inside a closed object: the object's box lies in the box
+// of the closed object, and the surfaces do not meet. Returns "" if there are no such objects, or
+// if more than a million pairs of boxes overlap.
 std::string nested_line(const Scene& scene, const Record& record) {
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   std::vector<std::uint32_t> all(boxes.size());
@@ -126,9 +126,9 @@ std::string nested_line(const Scene& scene, const Record& record) {
       counted(count, "object", "objects"), first);
 }
 
-// Returns the path of the file relative to the folder of the record.
+// Returns the path of `file`, relative to the folder of the file `record`.
 std::string beside(const std::string& file, const std::string& record) {
-  // Links are resolved first, since `..` behind a link names another folder than it seems.
+  // Resolves links first: `..` after a link means the parent of the link's target.
   const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
   const fs::path path = fs::absolute(file);
   return (fs::weakly_canonical(path.parent_path()) / path.filename())
@@ -136,7 +136,7 @@ std::string beside(const std::string& file, const std::string& record) {
       .string();
 }
 
-// The commands run, verify and plan. `verify` fails if any method misses a pair. `plan` only plans.
+// The commands run, verify and plan. `verify` fails if a pair was missed. `plan` runs nothing.
 class RunCommand {
  public:
   enum class Kind { run, verify, plan };
@@ -214,7 +214,7 @@ class RunCommand {
                  "held; boxes only. With --json and\n--pairs farcull merge joins all parts"});
     return rows;
   }
-  // Throws Error if an option needs an output that was not given or cannot have its result.
+  // Throws Error if --pairs is absent but needed, or if an option excludes --certificate.
   void refuse_outputs() const {
     const auto needs_pairs = [&](const char* option, bool given, const char* what) {
       if (!given || outputs_.pairs) return;
@@ -280,7 +280,7 @@ class RunCommand {
     if (frames_) command += " --frames " + quoted(*frames_);
     return command + " --self";
   }
-  // Returns the verdict, green or red on a terminal. Empty for `run` and `plan`.
+  // Returns the verdict of `verify`, green or red on a terminal. Returns "" for `run` and `plan`.
   std::string verdict_line(const Accounting& accounting) const {
     if (kind_ != Kind::verify) return "";
     const Colour colour = accounting.false_negatives == 0 ? Colour::good : Colour::bad;
@@ -330,7 +330,7 @@ class RunCommand {
       write_output(*outputs.certificate,
                    to_text(certificate_of(tile.part.scene, tile.record, &whole)));
     }
-    std::optional<TileList> list;  // what the record says about the file of pairs
+    std::optional<TileList> list;  // describes the file of pairs in the record
     if (outputs.pairs) {
       const std::string text = tile_list(tile, chosen);
       write_output(*outputs.pairs, text);
@@ -367,7 +367,7 @@ class RunCommand {
     RunOptions all = options;
     all.ignored = left_out(scene);
     require_asked(scene, all.ignored);
-    // FAR then draws all views, as it does with the smaller balls of pairs_at_risk().
+    // With no_shortcuts, FAR draws all views, as in the runs of pairs_at_risk().
     all.no_shortcuts = kind_ == Kind::verify && !no_risk_ && fattens(all.method);
     Session session(options.device);
     Record record = farcull::run(scene, all, session, progress);

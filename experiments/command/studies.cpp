@@ -1,4 +1,4 @@
-// The commands below `farcull experiment`, options of the studies and of `farcull merge`, and the
+// The subcommands of `farcull experiment`, and `farcull merge`. Reads their options, and prints the
 // progress of a run.
 #include <fmt/format.h>
 
@@ -43,7 +43,7 @@ constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 class StudiesCommand {
  public:
-  // Declares a command for each study, and the command `all`. The commands call run() of this
+  // Declares a command for each study, and the command `all`. Each command calls run() of this
   // object.
   std::vector<Command> add_to(CLI::App& experiment) {
     std::vector<Command> out;
@@ -162,7 +162,7 @@ class StudiesCommand {
         {"contestants", contestants_.value_or("")},
         {"device",
          request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    // This throws if there is no such device, before a file is created.
+    // Throws Error if the device does not exist, before any file is created.
     request.provenance = provenance_now(request.device, options);
 
     TerminalProgress terminal;

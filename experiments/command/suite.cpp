@@ -1,5 +1,5 @@
-// Reads the options and prints the counts. experiments/suite writes the files of a suite;
-// suite/ask.py runs a program on these files.
+// Reads the options of `farcull suite` and prints the counts. experiments/suite writes the files of
+// a suite; suite/ask.py runs another program on these files.
 #include <fmt/format.h>
 
 #include "embedded/ask_py.h"

@@ -1,5 +1,5 @@
-// Runs the proved checker. Passes the scene to the checker as 64-bit words, lowest byte first: the
-// number of objects, their sizes, then all coordinates. So the checker need not read meshes.
+// Runs the checker that is proved in Coq. The checker reads the scene as 64-bit words, lowest byte
+// first: the number of objects, one word per object, then all coordinates (see give_words()).
 #include "experiments/command/command.h"
 
 #include <fcntl.h>
@@ -30,7 +30,7 @@ constexpr const char* kRemedy =
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(kProgram, what, kRemedy); }
 
-// Throws Error unless the checker's output names these files, and its verdict fits its exit status.
+// Throws Error unless the checker printed these SHA-256 sums, and the verdict that `proved` says.
 void require_said(const std::string& said, const std::vector<std::string>& certificates,
                   const std::string& scene, bool proved) {
   std::istringstream lines(said);
@@ -53,7 +53,7 @@ void require_said(const std::string& said, const std::vector<std::string>& certi
 // Passes the words of the scene to the checker in a file in memory.
 int run_verified_checker(const std::vector<std::string>& certificates, bool tiles,
                          const std::function<void(const TakeWord&)>& words) {
-  // The checker inherits the file descriptor, and opens the file by this number.
+  // The checker inherits the file descriptor, and opens /proc/self/fd/NUMBER.
   const int memory = ::memfd_create("scene", 0);
   std::FILE* file = memory < 0 ? nullptr : ::fdopen(memory, "wb");
   if (file == nullptr) refuse(std::string("no file in memory: ") + std::strerror(errno));

@@ -1,4 +1,4 @@
-// The families of meshes. docs/suite.md describes each family.
+// Makes the meshes of the test suite. docs/suite.md describes each family of meshes.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -49,7 +49,7 @@ Objects accordion(RandomDraws&, double layers, int width) {
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
-/// Returns point i of the unit circle. Uses a rational parametrization of each quarter, not sines.
+/// Returns point i of the unit circle, by a rational parametrization of each quarter, not sines.
 Vec3 on_circle(int i, int per_quarter) {
   const double t = static_cast<double>(i % per_quarter) / per_quarter;
   const double c = (1 - t * t) / (1 + t * t);
@@ -68,7 +68,7 @@ Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
     const double radius = 4 + across.x() * (1 + 0x1p-10 * draws.between(-1, 1));
     return Vec3(along.x() * radius, along.y() * radius, across.y() + 2 * pitch * i / turn);
   });
-  // Replaces the last row of vertices around the tube by the first row.
+  // Closes the tube: triangles use the first vertex of each ring instead of the last vertex.
   for (auto& triangle : out.triangles) {
     for (std::uint32_t& v : triangle) {
       if (v % (around + 1) == around) v -= around;
@@ -191,7 +191,7 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   return out;
 }
 
-/// Coordinates have few bits, so touching faces lie exactly in one plane.
+/// The coordinates have few bits, so that touching faces lie exactly in one plane.
 Objects plates(RandomDraws&, double slivers, int halvings) {
   const double width = std::ldexp(1, -halvings);
   const int steps = static_cast<int>(slivers * width);
@@ -203,7 +203,7 @@ Objects plates(RandomDraws&, double slivers, int halvings) {
   return out;
 }
 
-/// The outermost shell is moved, mostly by more than the gap, so it mostly crosses the middle one.
+/// Makes three shells. The outermost shell is moved, and mostly crosses the middle shell.
 Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
@@ -264,8 +264,8 @@ void join_vertices(SuiteObject& object) {
 }
 
 // The motions. All frames of a motion are made with the same random draws; only `now` and `frame`
-// differ. Coordinates have few bits, so that contacts are exact, and no face is parallel to an
-// axis. The family cogs has neither of these two properties.
+// differ. Except in the family cogs, coordinates have few bits, so that contacts are exact, and no
+// face is parallel to an axis.
 
 SuiteObject box_object(const Vec3& lo, const Vec3& hi) {
   SuiteObject out;
@@ -300,7 +300,7 @@ Objects stack(RandomDraws& draws, double now, int) {
   return leaning(draws, std::move(out));
 }
 
-/// If `now` is 7/8, the side of the thread touches an edge of the ring.
+/// Makes a rod in a ring. If `now` is 7/8, the side of the rod touches an edge of the ring.
 Objects thread(RandomDraws& draws, double now, int frame) {
   Mesh ring = shapes::surface(16, 4, true, [](std::uint32_t i, std::uint32_t j) -> Vec3 {
     const double radius = j == 0 || j == 3 ? 1 : 1.5;
@@ -373,7 +373,7 @@ MeshFamily motion(const char* name, decltype(MeshFamily::make) make,
   return out;
 }
 
-/// Returns a row of the table of families. small: true if a small suite has the first member.
+/// Returns a row of the table of families. small: a small suite has the first member.
 MeshFamily family(const char* name, decltype(MeshFamily::make) make, bool self, bool small,
                   std::vector<MeshFamily::Member> members) {
   return {name, self, make, std::move(members), small ? 1u : 0u};

@@ -1,4 +1,4 @@
-// The families of pairs. docs/suite.md describes each family.
+// Makes the pairs of triangles of the test suite. docs/suite.md describes each family of pairs.
 #include <cmath>
 
 #include "experiments/generators/pair_generators.h"
@@ -8,7 +8,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Returns the rotation of the quaternion w + xi + yj + zk, times the quaternion's squared length.
+/// Returns the rotation matrix of the quaternion w + xi + yj + zk, times its squared length.
 Frame scaled_rotation(double w, double x, double y, double z) {
   const Vec3 first(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y));
   const Vec3 second(2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x));
@@ -16,7 +16,7 @@ Frame scaled_rotation(double w, double x, double y, double z) {
   return {{first, second, third}};
 }
 
-/// Returns the axes of the coordinates, in random order and with random signs.
+/// Returns the three coordinate axes, in random order and with random signs.
 Frame straight_frame(RandomDraws& draws) {
   Frame out{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
   std::swap(out.axis[0], out.axis[draws.below(3)]);
@@ -118,14 +118,14 @@ MadePair edge_edge(RandomDraws& draws, double bits) {
   const Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
   if (stays_aside(draws)) {
-    // a is on one side of the plane of both edges; v points to the other side.
+    // Corner a[2] is on one side of the plane of both edges. v points to the other side.
     const Vec3 across = (a[1] - a[0]).cross(u);
     v = along(v, across.dot(a[2] - at) > 0 ? Vec3(-across) : across);
   }
   return finished(draws, bits, a, {at - u, at + draws.whole(1, 3) * u, at + v});
 }
 
-/// Two triangles in one plane. Their corners are integer combinations of two integer vectors.
+/// Makes two triangles in one plane. Each corner is `origin` plus integer multiples of u and v.
 MadePair coplanar(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 5);
   const Vec3 u = draws.whole_point(extent);
@@ -153,8 +153,8 @@ MadePair coplanar(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, b);
 }
 
-/// Makes two triangles that touch in one plane. Then moves b by `steps` times the shortest step,
-/// out of the plane, or in the plane across the common edge.
+/// Makes two triangles in one plane that touch along an edge, or overlap. Then moves b by `steps`
+/// times an axis of the frame: in the plane, perpendicular to the edge, or out of the plane.
 MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
@@ -186,7 +186,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
   constexpr double kExtent = 0x1p50;
   MadePair out;
   for (Vec3& p : out.a) p = draws.whole_point(kExtent);
-  const bool level = draws.chance(3);  // parallel to a coordinate plane
+  const bool level = draws.chance(3);  // true: a is parallel to a coordinate plane
   const int axis = draws.below(3);
   if (level) out.a[1][axis] = out.a[2][axis] = out.a[0][axis];
   out.b = out.a;
@@ -202,9 +202,9 @@ MadePair duplicates(RandomDraws& draws, double units) {
   return out;
 }
 
-// The families of gaps, and the families of shapes.
+// Families of triangles with a small gap, and families of shapes: slivers, points, segments, folds.
 
-/// Returns 0, and then 2^-k and -2^-k for each k below. With zero_each, a 0 comes before each k.
+/// Returns 0, then 2^-k and -2^-k for each k in the list. zero_each: puts 0 before each 2^-k.
 std::vector<double> signed_powers(bool zero_each) {
   std::vector<double> out;
   for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
@@ -279,7 +279,7 @@ MadePair far_away(RandomDraws& draws, double distance) {
   return pair;
 }
 
-/// Returns a scaled pair. With probability 1/2 the scale is a power of two, so contacts stay exact.
+/// Returns a scaled pair. In half of the calls, the scale is a power of two: contacts stay exact.
 MadePair scales(RandomDraws& draws, double scale) {
   MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
@@ -357,7 +357,7 @@ Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double ext
   return with_point(draws.below(3), at, u, v);
 }
 
-/// Returns the step by which b moves: -1, 0 or 1 along each axis with probability 1/3, else zero.
+/// Returns a step for b: with probability 1/3, -1, 0 or 1 along each axis; else the zero vector.
 Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);
@@ -393,8 +393,8 @@ MadePair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
   return out;
 }
 
-/// a and b have a common edge, from 0 to 1 on the x axis. a lies in the plane z = 0. The third
-/// corner of b is `height` above this plane, on either side of the edge.
+/// Makes a and b with a common edge, from 0 to 1 on the x axis. a lies in the plane z = 0. The
+/// third corner of b is `height` above this plane, on either side of the edge.
 MadePair fold_edge(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.25, 1);
   const double y = draws.coarse(0.25, 1);
@@ -406,8 +406,8 @@ MadePair fold_edge(RandomDraws& draws, double height) {
   return fold(draws, {p, q, Vec3(x, y, 0)}, {p, q, Vec3(u, v, height)});
 }
 
-/// a and b have a common corner at the origin, and a lies in the plane z = 0. The second corner of
-/// b is `height` above the plane, mostly over the interior of a. The third corner is far above.
+/// Makes a and b with a common corner at the origin. a lies in the plane z = 0. The second corner
+/// of b is `height` above the plane, mostly over the interior of a. The third corner is far above.
 MadePair fold_vertex(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.5, 1);
   const double y = draws.coarse(0.5, 1);
@@ -447,7 +447,7 @@ Frame leaning_frame(RandomDraws& draws) {
   const double w = draws.sign();
   const double x = draws.sign();
   const double y = draws.sign();
-  // One part is 0: a quaternion with four parts of magnitude 1 would only permute the axes.
+  // One part is 0: a quaternion with all four parts +-1 would only permute the coordinate axes.
   return scaled_rotation(w, x, y, 0);
 }
 

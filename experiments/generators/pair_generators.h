@@ -38,7 +38,7 @@ class RandomDraws : public shapes::Random {
   Vec3 point() { return in_cube(1); }
 };
 
-/// Two triangles with finite coordinates, which may be degenerate.
+/// Two triangles, perhaps degenerate, with finite coordinates.
 struct DrawnPair {
   std::array<Vec3, 3> a, b;
 };
@@ -49,14 +49,14 @@ void each_corner(DrawnPair& pair, const Function& function) {
     for (Vec3& p : *t) function(p);
   }
 }
-/// Returns a triangle in the plane through `at` along u and v. The point `at` is a corner if
-/// `where` is 0, on an edge if 1, and in the interior if 2.
+/// Returns a triangle in the plane that u and v span at the point `at`. This point is a corner if
+/// `where` is 0, on an edge if `where` is 1, and in the interior if `where` is 2.
 inline std::array<Vec3, 3> with_point(int where, const Vec3& at, const Vec3& u, const Vec3& v) {
   if (where == 0) return {at, at + u, at + v};
   return {where == 1 ? Vec3(at - u) : Vec3(at - u - v), at + u, at + v};
 }
-/// Shuffles the corners of each triangle, and exchanges a and b in half of the calls, since
-/// predicates branch on the order.
+/// Shuffles the corners of each triangle, and exchanges a and b in half of the calls. The
+/// branches of predicates depend on the order.
 void shuffle(RandomDraws& draws, DrawnPair& pair);
 
 /// Three axes at right angles and of equal length.
@@ -73,8 +73,8 @@ Frame leaning_frame(RandomDraws& draws);
 /// Returns the rounded rotation matrix of a random quaternion with integer parts from -9 to 9.
 Frame turned_frame(RandomDraws& draws);
 
-// The families of a suite (docs/suite.md), of pairs and of meshes. Each family makes pairs that
-// meet and pairs that do not meet. Most families have a parameter.
+// The families of pairs and the families of meshes in a suite (docs/suite.md). Each family makes
+// pairs that meet and pairs that do not meet. Most families have a parameter.
 
 struct MadePair : DrawnPair {
   bool neighbours = false;  // true: corners at equal positions are one vertex of a mesh
@@ -84,7 +84,7 @@ struct PairFamily {
   std::string name;
   std::string description;     // one line
   std::string parameter;       // what the parameter means; "" if there is none
-  std::vector<double> values;  // values of the parameter; consecutive pairs use consecutive ones
+  std::vector<double> values;  // values of the parameter; pairs use them in turn
   MadePair (*make)(RandomDraws& draws, double parameter);
 };
 
@@ -94,20 +94,20 @@ const std::vector<PairFamily>& pair_families();
 std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number);
 
 struct SuiteObject {
-  std::vector<Vec3> vertices;                           // finite
+  std::vector<Vec3> vertices;                           // coordinates are finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices; not empty
 
   void add(std::uint32_t i, std::uint32_t j, std::uint32_t k) { triangles.push_back({i, j, k}); }
 };
 
-/// Meshes of one kind: practical ones such as scans or cloth, or hard ones such as folds or fans.
+/// Meshes of one kind: practical meshes such as scans or cloth, or hard cases such as folds.
 struct MeshFamily {
   std::string name;
   bool self = false;  // true: each object is also tested against itself
   /// Makes the objects. detail: fineness of the meshes, in a unit that depends on the family.
   std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
-    double parameter = 0;  // docs/suite.md defines this for each family
+    double parameter = 0;  // parameter of the family (docs/suite.md)
     int detail = 0;
   };
   std::vector<Member> members;

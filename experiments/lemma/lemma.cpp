@@ -17,10 +17,10 @@ namespace {
 constexpr double kUsualDepth = 128;  // default of LemmaSettings::depth
 
 using Random = RandomNumbers;
-using Weights = std::array<int, 3>;  // weights of a triangle's corners; they give one of its points
+using Weights = std::array<int, 3>;  // barycentric coordinates of a point, not normalized
 
-// A triangle in px, and its points to test. The origin is a pixel corner. run_round() divides the
-// window into square cells, and moves the origin of each trial to the centre of its cell.
+// A triangle in px, and points of the triangle to test. The origin is a pixel corner. run_round()
+// divides the window into square cells, and moves the origin of each trial to the centre of a cell.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<Weights> weights;
@@ -177,13 +177,13 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   }
 }
 
-// Extends depth_rounding() to 16 bits, in units of 2^-24. A 16-bit buffer adds an error of at most
-// 1 / (2^16 - 1) when it stores a depth, and of at most 2^-24 when the depth is read as a float.
+// Returns depth_rounding(), also for 16 bits, in units of 2^-24. A 16-bit buffer errs by at most
+// 1 / (2^16 - 1) when it stores a depth, and by at most 2^-24 when the depth is read as a float.
 double rounding_of(int depth_bits) {
   return depth_bits == 16 ? 0.5 + 1 + 0x1p24 / (0x1p16 - 1) + 1 : depth_rounding(depth_bits);
 }
 
-// Compares a point with the samples of a pixel that contains the point.
+// Compares a point with the samples of a pixel that contains the point. Counts errors in the row.
 void count(const ExactPoint& point, float entry, float exit, const Window& window, int depth_bits,
            bool stored, LemmaRow& row) {
   ++row.points;
@@ -205,7 +205,7 @@ void count(const ExactPoint& point, float entry, float exit, const Window& windo
   row.largest_px = std::max(row.largest_px, by * step);
 }
 
-// Random numbers: `trials` for triangles, `lifts` for their depths in windows deeper than usual.
+// Random numbers: `trials` for triangles, `lifts` for depths in windows deeper than kUsualDepth.
 struct Streams {
   RandomNumbers trials;
   RandomNumbers lifts;

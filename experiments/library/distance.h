@@ -28,9 +28,9 @@ struct DistanceFinderOptions {
   std::optional<double> within = {};  // largest distance of an answer, in world units; at least 0;
                                       // finite with `all`
   bool self =
-      false;  // also pairs of triangles of one object, except neighbours; not with `nearest`
+      false;  // also pairs of triangles within an object, except neighbours; not with `nearest`
   std::vector<bool> self_objects = {};  // one `self` per object; may be empty
-  bool inside = true;                   // find which object is inside the other; not with `all`
+  bool inside = true;                   // find which object is inside another; not with `all`
   /// true: sets DistanceAnswer::squared. With `all`, each number is then the exact value, rounded
   /// once; this takes about ten times as long.
   /// false, with `all`: the relative error of a distance is at most 2^-32. The distance is 0 iff
@@ -41,14 +41,14 @@ struct DistanceFinderOptions {
   /// Pairs of different objects that get no answer. Objects are numbered from 0. Not with
   /// `nearest`.
   std::vector<std::array<std::uint32_t, 2>> ignore = {};
-  unsigned threads = 0;  // up to 1024; 0: one per core; the answer does not depend on it
+  unsigned threads = 0;  // up to 1024; 0: one per core; any number gives the same answer
   MayGoOn may_go_on = {};
 };
 
 /// Which of two objects is inside the other.
 /// unknown: not computed, or the objects meet. none: neither object is inside the other.
 /// a, b: this object is completely inside the other.
-/// not_closed: the object that may be the outer one is not closed, so it has no inside.
+/// not_closed: the object that may contain the other is not closed, so it has no inside.
 enum class DistanceInside { unknown, none, a, b, not_closed };
 
 /// The distance of two objects, or with `all` of two triangles.
@@ -68,8 +68,8 @@ struct DistanceAnswer {
 };
 
 /// Finds distances repeatedly. Each call begins with the nearest triangles of the previous call,
-/// which saves time if the scene moved only a little. The next call may give any scene. Only one
-/// call at a time may use a DistanceFinder.
+/// which saves time if the scene moved only a little. Each call may give a different scene. Only
+/// one call at a time may use a DistanceFinder.
 class DistanceFinder {
  public:
   /// Throws Error naming the option that is bad.

@@ -7,7 +7,7 @@
 // sets, so touching counts. A degenerate triangle counts as a segment or a point. The answer is the
 // same for any number of threads.
 //
-// A function that fails throws an Error, which says where, why and what to do (error.h), or
+// If a function fails, it throws an Error that says where, why and what to do (error.h), or
 // std::bad_alloc if memory runs out. For distances see distance.h, for matrices of Eigen see
 // eigen.h.
 //
@@ -16,7 +16,7 @@
 
 #if __cplusplus < 202002L
 #error "farcull needs C++20: compile with -std=c++20 (CMake: link farcull::farcull)"
-#include "farcull needs C++20"  // no such file: ends the compilation, so no other errors follow
+#include "farcull needs C++20"  // a missing file ends the compilation before other errors
 #endif
 
 #include <algorithm>
@@ -92,7 +92,7 @@ struct Input {
   std::span<const std::int64_t> wide_triangles = {};
   /// One pose for each object. If empty, no object moves. With poses, two objects must not use the
   /// same vertex. If all other arrays are empty, the poses move the last arrays that the same
-  /// Collider or DistanceFinder got. A call with bad input discards those arrays.
+  /// Collider or DistanceFinder received. A call with bad input discards these arrays.
   std::span<const Pose> poses = {};
 };
 
@@ -149,7 +149,7 @@ struct Report {
 
   double candidates_ms = 0;      // wall clock, from the input to the candidates
   double exact_ms = 0;           // wall clock of the exact tests
-  std::uint64_t candidates = 0;  // pairs, without pairs of ignored objects
+  std::uint64_t candidates = 0;  // pairs of triangles, except pairs of ignored objects
   std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` if the
                               // limit was reached first
   std::uint64_t neighbours = 0;   // decided candidates that are neighbours, colliding or not
@@ -179,10 +179,10 @@ struct Result {
 /// Finds the colliding pairs of one input. Throws as Collider does.
 Result collide(const Input& input, const Options& options = {});
 
-/// Finds colliding pairs repeatedly. From call to call it keeps buffers, and results about
-/// triangles that did not move. Any thread may call it, but only one call may run at a time. A
-/// second call meanwhile throws Error and changes nothing. A call of a moved-from Collider also
-/// throws Error. While a Collider is moved or destroyed, no other thread may use it.
+/// Finds colliding pairs repeatedly. Between calls, a Collider keeps buffers, and results about
+/// triangles that did not move. Any thread may call find(), but only one call may run at a time: a
+/// second call throws Error and changes nothing. A call of a moved-from Collider also throws Error.
+/// While a Collider is moved or destroyed, no other thread may use the Collider.
 class Collider {
  public:
   /// Throws Error naming the option that is bad.
@@ -193,9 +193,9 @@ class Collider {
   Collider& operator=(Collider&&) noexcept;
 
   /// Throws Cancelled if Options::may_go_on returns false. Throws Error if
-  /// - the input does not satisfy Input,
+  /// - the input breaks a condition that Input states,
   /// - there is nothing to test: one object without `self`, or fewer than two triangles,
-  /// - self_objects is neither empty nor has one value for each object,
+  /// - self_objects is not empty, and its size is not the number of objects,
   /// - an ignored object does not exist.
   /// The Collider can be used again after an exception. find() sets the floating-point environment
   /// of the calling thread (rounding, flushing, traps) and restores it at the end.

@@ -16,8 +16,8 @@ constexpr std::size_t kBlock = 1536;  // numbers in a block, a multiple of 3; fi
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
 
-// True if no number is infinite or NaN. The exponent bits of infinity and NaN are all ones, so
-// adding one to the exponent sets the sign bit. The loop has no branch, so that the compiler can
+// True if no number is infinite or NaN. The exponent bits of infinity and NaN are all ones. Adding
+// one to such an exponent sets the sign bit. The loop has no branch, so that the compiler can
 // vectorize it.
 bool all_finite(std::span<const double> block) {
   constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
@@ -26,8 +26,8 @@ bool all_finite(std::span<const double> block) {
   return bits >> 63 == 0;
 }
 
-// Converts indices. Returns true if all are at least 0 and below `vertices`. A 64-bit number that
-// is negative or too large for 32 bits has a bit set in its upper half.
+// Converts indices. Returns true if all indices are at least 0 and below `vertices`. A 64-bit index
+// that is negative or too large for 32 bits has a bit set in its upper half.
 template <class Index>
 bool convert(std::span<const Index> from, std::uint32_t* to, std::size_t vertices) {
   std::uint64_t bits = 0;
@@ -41,8 +41,8 @@ bool convert(std::span<const Index> from, std::uint32_t* to, std::size_t vertice
   return bits >> 32 == 0 && most < vertices;
 }
 
-// Appends the vertices whose bits differ between the blocks a and b. Each block begins at vertex
-// `first`.
+// Appends the numbers of the vertices whose bits differ between the blocks a and b. The blocks have
+// `size` doubles and begin at vertex `first`.
 void append_moved(const double* a, const double* b, std::size_t size, std::size_t first,
                   std::vector<std::uint32_t>& out) {
   std::size_t next = out.size();
@@ -58,9 +58,9 @@ void append_moved(const double* a, const double* b, std::size_t size, std::size_
 }
 
 // Copies the vertices. Checks the copies, not the input, since another thread may change the input
-// meanwhile. The old contents of `to` were checked before, so equal blocks need no check. A vertex
-// that is not finite becomes 0, 0, 0 and is listed in `bad`. change: receives the vertices that
-// changed; may be null.
+// during the call. The old contents of `to` were checked before, so equal blocks need no check. A
+// vertex that is not finite becomes 0, 0, 0 and is listed in `bad`. change: receives the vertices
+// that changed; may be null.
 void copy_vertices(std::span<const double> from, std::vector<Vec3>& to, FrameChange* change,
                    std::vector<std::uint32_t>& bad) {
   const std::size_t before = 3 * to.size();
@@ -101,7 +101,7 @@ void require_unused(const std::vector<std::uint32_t>& bad, std::size_t vertices,
               "give finite coordinates to each vertex that a triangle uses");
 }
 
-// Returns true if nothing changed. checked: true if the old indices in `to` are below `vertices`.
+// Copies triangles. Returns true if none changed. checked: indices in `to` are below `vertices`.
 template <class Index>
 bool copy_triangles(std::span<const Index> from, std::size_t vertices, bool checked,
                     std::vector<std::array<std::uint32_t, 3>>& to) {
@@ -305,7 +305,7 @@ bool pays(std::uint64_t triangles, std::uint64_t of_moved, bool keeps_frames, Ta
   return cost < all && taken.loss < all;
 }
 
-// Copies input with poses and moves the vertices. Returns the same as copy().
+// Copies input that has poses, and moves the vertices. Returns the result of copy().
 bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change, bool asked) {
   const bool alone = are_alone(input);
@@ -326,7 +326,7 @@ bool copy_posed(const Input& input, bool self, const std::vector<bool>& self_obj
   return same;
 }
 
-// The enumerations of farcull.h have the same values as the internal ones.
+// The enumerations of farcull.h have the same values as the internal enumerations.
 static_assert([] {
   using Given = Contact::Kind;
   using Own = ContactKind;
@@ -382,7 +382,7 @@ std::optional<BlockDecision> load_poses(const Input& input, const PosesQuestion&
     --taken.skips;
     return std::nullopt;
   }
-  taken.skips = taken.next_skips;  // set to 0 below on success
+  taken.skips = taken.next_skips;  // set to 0 below if the call succeeds
   taken.next_skips = std::min(2 * taken.next_skips, kMostSkips);
   try {
     if (!taken.rigid) {

@@ -61,9 +61,9 @@ auto watched(const MayGoOn& may_go_on, const Call& call) {
   return std::move(*out);
 }
 
-/// Runs the call with the state of a Collider or DistanceFinder. The flag State::used is set while
-/// a call runs. Throws Error naming the object if the object was moved from, or if another call
-/// uses the state.
+/// Runs the call, which uses the state of a Collider or DistanceFinder. The flag State::used is set
+/// while a call runs. Throws Error naming the object if the object was moved from, or if another
+/// call uses the state.
 template <class State, class Call>
 auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
   return as_proved([&] {
@@ -83,16 +83,16 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 
 /// The input of the last call, and the poses of its objects.
 struct TakenInput {
-  Scene scene;                    // vertices are moved by the poses, unless `stale`
+  Scene scene;                    // with vertices after the poses, unless `stale`
   std::uint64_t passed_over = 0;  // vertices that are not finite and that no triangle uses
   // The members below are empty if the last call had no poses.
   std::vector<Vec3> unmoved;  // the vertices before the poses
   std::vector<std::uint32_t>
       object_of;  // the object of each vertex; kNoObject: no triangle uses it
   std::vector<Pose> poses;
-  /// True if only the vertices of some blocks were moved by `poses`, and the others by older poses.
+  /// True if `poses` moved the vertices of some blocks only; older poses moved the other vertices.
   bool stale = false;
-  std::optional<RigidBlocks> rigid;  // made of the unmoved vertices; null: not made yet
+  std::optional<RigidBlocks> rigid;  // made from `unmoved`; null: not made yet
   double loss = 0;                   // lost time, in triangles; see pays() in input.cpp
   /// skips: how many of the next calls of load_poses() return null at once. next_skips: the value
   /// of `skips` after the next failure; doubled by each failure, and 1 after a success.
@@ -102,13 +102,13 @@ inline constexpr std::uint32_t kNoObject = ~std::uint32_t{0};
 inline constexpr int kMostSkips = 32;
 
 /// Copies the input into `taken`, which holds the input of the last call. self, self_objects: as in
-/// Options. change: receives the changes since the last call; may be null. asked: whether a scene
-/// with nothing to test is an error. Throws Error for input that does not satisfy Input; `taken` is
-/// then empty.
+/// Options. change: receives the changes since the last call; may be null. asked: true if a scene
+/// with nothing to test is an error. Throws Error if the input breaks a condition of Input;
+/// `taken` is then empty.
 void load_input(const Input& input, bool self, const std::vector<bool>& self_objects,
                 TakenInput& taken, FrameChange* change = nullptr, bool asked = true);
 
-/// Settings of the search for which load_poses() moves vertices.
+/// Settings of the search for colliding pairs, for load_poses().
 struct PosesQuestion {
   double clearance = 0;
   std::span<const ObjectPair> ignored;  // result of ignored_of()
@@ -116,7 +116,7 @@ struct PosesQuestion {
   bool keeps_frames = false;  // the results of the last call are kept
 };
 /// Takes input that has only poses. Moves only the vertices of blocks that overlap, and returns
-/// these blocks. Returns null if the caller must call load_input() instead:
+/// these blocks of triangles. Returns null if the caller must call load_input() instead:
 /// - the input has other arrays, or the last call had another number of poses,
 /// - a pose is bad, or an object is tested against itself,
 /// - decide_by_motions() returns null, too many boxes overlap, or load_input() takes less time,

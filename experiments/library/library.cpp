@@ -1,4 +1,4 @@
-// Collider and DistanceFinder. Each copies its input into a scene, and calls run() or distances().
+// Implements Collider by run(), and DistanceFinder by distances(). Both copy the input to a Scene.
 #include <algorithm>
 #include <cmath>
 
@@ -50,13 +50,13 @@ struct Collider::State {
 
   // Loads the scene of a call. From the third call on, also finds the changes since the last call.
   void take_scene(const Input& input);
-  // Finds the collisions. start: measures time from the begin of the call. callers: the caller's
+  // Finds the collisions. start: measures time from the start of the call. callers: the caller's
   // floating-point environment.
   Result find(const Stopwatch& start, const FloatingPoint& callers, const Progress& progress);
 };
 
 void Collider::State::take_scene(const Input& input) {
-  // Remembering frames takes memory, so it begins with the second call.
+  // Remembered frames take memory, so the first call remembers none.
   if (++calls == 2) session.remember_frames();
   const FrameMemory* const memory = session.frame_memory();
   change = {};
@@ -134,7 +134,7 @@ Result collide(const Input& input, const Options& options) { return Collider(opt
 
 namespace {
 
-// The enumerations of distance.h have the same values as the internal ones.
+// The enumerations of distance.h have the same values as the internal enumerations.
 static_assert(same(DistanceKind::objects, DistancePairs::objects) &&
               same(DistanceKind::nearest, DistancePairs::nearest) &&
               same(DistanceKind::all, DistancePairs::all));

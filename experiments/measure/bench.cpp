@@ -1,6 +1,6 @@
-// Sets up the contestants: methods, which run as by `farcull run`, and peers, which run by their
-// own code. Runs a cold round, then the rounds that count. Compares every contestant's pairs with
-// the pairs of the first contestant. Makes the table and JSON.
+// Sets up the contestants: methods, which run as in `farcull run`, and peers, which run the code of
+// other libraries. Runs a cold round, then the rounds that count. Compares every contestant's pairs
+// with the pairs of the first contestant. Makes the table and JSON.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ class ContestantList {
 void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.methods != "all";
   const bool no_gl = is_cpu(options.device);
-  // Without --device, methods that draw are measured on GL only if a hardware device answers.
+  // Without --device, methods that draw are measured on GL only if GL has a hardware device.
   const bool gl_by_name = by_name && !options.device.empty();
   const std::string gl_device = options.device.empty() ? "gl" : options.device;
   std::shared_ptr<Session> gl;  // shared by all methods on GL
@@ -113,7 +113,7 @@ void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& 
   }
 }
 
-// Milliseconds of the parts of a contestant's runs.
+// Times in ms of the parts of a contestant's runs, one value per run.
 struct Parts {
   std::vector<double> build, candidates, exact;
 };
@@ -236,7 +236,7 @@ BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contes
           row.candidate_pairs = answer.candidate_pairs;
           row.pairs = answer.pairs.size();
         }
-        // A cold run counts only if it is over the limit, since no other run follows then.
+        // A cold run counts only if it exceeds the limit: the contestant is then not run again.
         if (round >= 0 || ms > rounds.limit_ms) {
           parts[i].build.push_back(answer.build_ms);
           parts[i].candidates.push_back(answer.candidates_ms);

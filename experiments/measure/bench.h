@@ -5,7 +5,7 @@
 //
 // Every contestant is first set up (contexts, shaders, thread pools). Then it runs once cold, and
 // its memory is measured. Then the contestants run in turn, `repeat` times each, so that a
-// temporary slowdown of the machine affects all of them. All contestants must find the same pairs.
+// temporary slowdown of the machine affects all contestants. All must find the same pairs.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct BenchOptions {
 struct TimedRow {
   std::string name, library;
   bool peer = false;
-  Spread total_ms = {};                 // of the repeated runs; of the cold run if there are none
+  Spread total_ms = {};                 // of the repeated runs; without repeats, of the cold run
   double cold_ms = 0, build_ms = 0;     // build_ms: a median
   std::optional<double> peak_mib = {};  // memory that the cold run added at its peak
   int repeats = 0;                      // 0: the cold run was over the limit
@@ -75,7 +75,7 @@ struct BenchResult {
 /// `none`, or names with commas between. Throws Error naming the option for an unknown name.
 std::vector<std::string> chosen_names(const std::string& option, const std::string& text,
                                       const std::vector<std::string>& known);
-/// Returns the peers that the text of --peers selects.
+/// Returns the peers that `text`, the value of --peers, selects.
 template <class AnyPeer>
 std::vector<AnyPeer> chosen_peers(const std::string& text, std::vector<AnyPeer> known) {
   std::vector<std::string> names;
@@ -113,7 +113,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
                                const BenchResult& result);
 std::string bench_table(const Scene& scene, const BenchOptions& options, const BenchResult& result);
 
-// Distances.
+// ---- the benchmark of distances ----
 
 struct DistanceRecord;
 
@@ -128,8 +128,8 @@ struct DistanceBenchOptions {
 /// A contestant's answers compared with farcull's answers, which are exact.
 struct DistanceErrors {
   std::uint64_t answers = 0;
-  std::uint64_t lacking = 0;       // distances that only farcull gives
-  std::uint64_t beyond = 0;        // distances that only the contestant gives
+  std::uint64_t lacking = 0;       // distances that farcull gives, but not the contestant
+  std::uint64_t beyond = 0;        // distances that the contestant gives, but not farcull
   std::uint64_t exact = 0;         // distances that are the same double as farcull's
   std::uint64_t other_zero = 0;    // distances where exactly one of the two answers is 0
   std::uint64_t other_object = 0;  // with `nearest`: answers with a farther object
@@ -155,7 +155,7 @@ struct DistanceBenchResult {
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
 
-/// `farcull distance` in the form of a peer. It is the first contestant of bench_distances().
+/// Returns `farcull distance` in the form of a peer: the first contestant of bench_distances().
 DistancePeer farcull_distances();
 /// Returns the distances of a record in the form that peers use. Precondition: the record answers
 /// `objects`, or `nearest` with k = 1.
@@ -170,8 +170,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
                                  const DistanceBenchResult& result);
 
-// Poses. In each frame an object moves as a whole. The contestants are new calls of the library,
-// one Collider that gets only poses, and peers that keep models of the objects.
+// The benchmark of poses. In each frame, an object moves as a rigid body. The contestants are a new
+// call of the library per frame, a Collider that gets only poses, and peers that keep the objects.
 
 struct PoseBenchOptions {
   std::string peers = "all";  // all, none, or names with commas
@@ -207,7 +207,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const PoseBenchOptions& optio
 std::string pose_bench_table(const Scene& scene, const PoseBenchOptions& options,
                              const PoseBenchResult& result);
 
-// Functions that all three benchmarks use.
+// ---- functions that all three benchmarks use ----
 
 /// Reports "NAME, cold" or "NAME, 2 of 5" to `progress`.
 void show_round(const Progress& progress, const std::string& name, int round, int repeats);

@@ -1,4 +1,4 @@
-// Runs all cells in turn; a cell is a method at a resolution.
+// Runs all cells in turn. A cell is a method with a resolution, an offset and a radius.
 #include "experiments/measure/compare.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ std::vector<int> resolutions_of(const CompareArguments& arguments, Method method
 
 using Words = std::vector<std::string>;
 
-// Returns the runs to compare. self: true if an object is tested against itself.
+// Returns the cells to compare. self: true if an object is tested against itself.
 std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
   const std::string methods =

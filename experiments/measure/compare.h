@@ -41,7 +41,7 @@ std::string usual_methods(bool clearance, bool self);
 void validate(const CompareArguments& arguments);
 
 /// Runs all methods, each `repeat` times. A method that draws runs at every resolution, and far
-/// also with every offset and radius. If a radius of far has no guarantee, all radii draw the same
+/// also with every offset and radius. If a radius of far has no guarantee, all radii run the same
 /// stages (RunOptions::no_shortcuts). Throws Error for bad arguments. Throws Error before the first
 /// run if a resolution is too large for the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,

@@ -60,7 +60,7 @@ DistancePeer farcull_distances() {
 DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
   DistanceErrors out{.answers = answer.size()};
-  // With `nearest`, each object has one answer. In a tie, the nearest objects may differ.
+  // With `nearest`, each object has one answer. In a tie, the answers may name different objects.
   const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {
@@ -90,7 +90,7 @@ DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& ans
 
 DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptions& options,
                                     const Progress& progress) {
-  // No peer measures an object against itself.
+  // Peers do not measure an object against itself, so farcull does not do this either.
   Scene scene = given;
   for (Object& object : scene.objects) object.self = false;
   if (options.repeat < 1) throw Error("--repeat", "is below 1", "give 1 or more");

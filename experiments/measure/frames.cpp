@@ -1,4 +1,4 @@
-// Each frame becomes a row of a table, an element of the JSON record and rows of CSV.
+// Writes each frame as a row of a table, an element of the JSON record and rows of CSV.
 #include "experiments/measure/frames.h"
 
 #include <fmt/format.h>
@@ -52,14 +52,14 @@ Json frame_json(const Scene& scene, const Record& record, const Json& head, long
   out["queries"] = work.queries;
   out["motion"] = Json::object();
   const FrameNotes notes = source.notes();
-  // JSON has null for a value that is not finite.
+  // A value that is not finite becomes null in JSON.
   for (const auto& [name, value] : notes.values) out["motion"][name] = value;
   out["warning"] = text_json(notes.warning);
   return out;
 }
 
-// Formats a line for each frame as soon as the frame is done. A column is added when a frame first
-// has a cell for it. The line of names is repeated when a column is added or becomes wider.
+// Formats a row for each frame as soon as the frame is done. The first frame that has a value for a
+// column adds the column. The header line is repeated when a column is added or becomes wider.
 class FrameTable {
  public:
   /// width: the least width of the first column.
@@ -79,7 +79,7 @@ class FrameTable {
     found->cell = cell;
   }
 
-  /// Returns the row of the frame, after a line of names if a column is new or wider.
+  /// Returns the row of the frame, after a header line if a column is new or wider.
   std::string row() {
     std::string out;
     if (std::exchange(renamed_, false)) {
@@ -133,7 +133,7 @@ void add_row(const Scene& scene, const Record& record, long frame, const FrameNo
   for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
 }
 
-// The different warnings, each with its first frame and the number of its frames.
+// The distinct warnings, each with the first frame and the number of frames that have the warning.
 struct Warnings {
   struct Line {
     std::string text;

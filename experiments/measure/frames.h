@@ -12,9 +12,9 @@
 
 namespace farcull {
 
-/// Calls `one` for each frame of the range. The progress `named` puts `before` and "frame 3 of 10:
-/// " before the name of a stage. SIGINT, SIGTERM and SIGHUP end the program at once. If `end` is
-/// not null, the signal handler first prints the number of finished frames and `end`.
+/// Calls `one` for each frame of the range. `named` puts `before` and text like "frame 3 of 10:"
+/// before the name of a stage. SIGINT, SIGTERM and SIGHUP end the program at once. If `end` is not
+/// null, the signal handler first prints the number of finished frames and `end`.
 void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
                     const std::string& before,
                     const std::function<void(long frame, const Progress& named)>& one);
@@ -23,7 +23,7 @@ struct FramesQuestion {
   RunOptions options;
   FrameRange range;
   bool self = false;
-  bool strict = false;       // farcull verify: require the guarantee of every method
+  bool strict = false;       // true (farcull verify): a missed pair fails every method
   bool pairs = false;        // write the CSV of pairs
   PairColumns columns = {};  // additional columns of the CSV of pairs
   bool certificates = false;
@@ -32,8 +32,8 @@ struct FramesQuestion {
   std::function<std::vector<ObjectPair>(const Scene&)> ignored = {};
 };
 
-/// Milliseconds of a frame, for candidates and exact tests together. Reading and accounting are not
-/// included.
+/// Times of a frame in ms, for finding candidates and for exact tests together. Excludes the times
+/// of reading and accounting.
 struct FrameTimes {
   double median = 0, p95 = 0, max = 0;  // p95: 95th percentile by nearest rank
   FARCULL_FIELDS(median, p95, max)
@@ -43,7 +43,7 @@ struct FrameTimes {
 std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 
-/// The results of a frame that is done.
+/// The results of a finished frame.
 struct FrameReport {
   const nlohmann::ordered_json& head;     // entries of the record that hold for all frames
   const nlohmann::ordered_json& frame;    // an element of `frames` in the record

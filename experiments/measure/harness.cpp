@@ -1,5 +1,5 @@
 // Runs the contestants in rounds and summarizes their times. The bootstrap uses std::mt19937_64,
-// which gives the same random numbers with every library.
+// which gives the same random numbers with every standard library.
 #include "experiments/measure/harness.h"
 
 #include <numeric>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kResamples = 10000;
 constexpr std::uint64_t kSeed = 1;
 
-// Returns middle(values) and reorders the values. Precondition: there is a value.
+// Returns the same as middle(values), but reorders the values. Precondition: there is a value.
 double middle_of(std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(n / 2);
@@ -29,14 +29,14 @@ double middle(std::vector<double> values) { return values.empty() ? 0 : middle_o
 
 Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
-  std::ranges::sort(values);  // so that their order does not matter
+  std::ranges::sort(values);  // the result must not depend on the order
   const std::size_t n = values.size();
   std::mt19937_64 generator(kSeed);
   std::vector<double> medians(kResamples), drawn(n);
   for (double& median : medians) {
     for (double& value : drawn) {
-      // std::uniform_int_distribution is not used, since it differs between libraries. The bias of
-      // this index is below n / 2^32.
+      // std::uniform_int_distribution differs between standard libraries, so this computes the
+      // index itself. The bias of the index is below n / 2^32.
       value = values[((generator() >> 32) * n) >> 32];
     }
     median = middle_of(drawn);

@@ -28,7 +28,7 @@ double middle(std::vector<double> values);
 /// is the percentile interval of the bootstrap (Efron and Tibshirani 1993, section 13.3). For this
 /// interval, n values are drawn with replacement 10,000 times. The interval goes from the 2.5th to
 /// the 97.5th percentile of the medians of these draws. The order of the values does not matter.
-/// docs/experiments.md, "Statistics", tells how likely the interval contains the true median.
+/// docs/experiments.md, "Statistics", says how likely the interval contains the true median.
 struct Spread {
   double median = 0, min = 0, max = 0;
   double low = 0, high = 0;
@@ -68,14 +68,14 @@ struct Timed {
 using TimedRun = std::function<double(std::size_t contestant, int round)>;
 
 /// Runs all contestants in turn, round after round, so that a temporary slowdown of the machine
-/// affects all of them. An exception of `run` ends the measurement.
+/// affects all contestants. An exception of `run` ends the measurement.
 std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& rounds,
                                     const TimedRun& run);
 
 // ---- the state that measurements of one process share ----
 
-/// The colliding pairs of a scene, by exact predicates on every pair whose boxes meet
-/// (verify/exact.h).
+/// The colliding pairs of a scene. Exact predicates (verify/exact.h) decide every pair of triangles
+/// whose boxes meet.
 struct TruePairs {
   std::vector<TrianglePair> pairs;  // sorted; includes neighbours
   std::uint64_t triangles = 0;      // number of triangles in the pairs
@@ -85,8 +85,8 @@ struct TruePairs {
 /// Returns the triangles that are in a pair, each once, ascending.
 std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
 
-/// Returns the truth without neighbours, which are two triangles of one object that share a vertex
-/// position. Other libraries leave out neighbours.
+/// Returns the truth without pairs of neighbours, since other libraries leave them out. Neighbours
+/// are two triangles of one object that share a vertex position.
 TruePairs without_neighbours(const Scene& scene, const TruePairs& truth);
 
 /// How an answer differs from the truth. Neighbours count as any other pair.

@@ -1,5 +1,5 @@
-// Brings the sets of four methods into one form, counts their sizes, and compares the sets with the
-// exact nearest neighbours.
+// Converts the potential neighbour sets of four methods to one form, counts their sizes, and
+// compares the sets with the exact nearest neighbours.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
@@ -42,9 +42,9 @@ SquaredRange range_of(const Box& a, const Box& b) {
 // infinite, and every box is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
-// For an object a, the bound is the minimum, over all other objects, of the largest distance
-// between the two boxes. Object b may be nearest to a if the least distance of their boxes is at
-// most the bound. The same bound, applied to boxes of triangles, selects triangles.
+// Selects objects by a bound. For an object a, the bound is the minimum, over all other objects, of
+// the largest distance between the two boxes. Object b may be nearest to a if the least distance of
+// their boxes is at most the bound. The same bound selects triangles by their boxes.
 NeighbourSets sets_of_boxes(const Scene& scene) {
   const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
   const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -102,7 +102,7 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   try {
     found = (reliable ? reliable_neighbours : voronoi_neighbours)(scene, voronoi, progress);
   } catch (const Error& error) {
-    // An error about options is thrown again.
+    // Passes on errors about options.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
     return {.objects = {}, .left_out = error.reason};
   } catch (const std::bad_alloc&) {
@@ -117,11 +117,11 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   return out;
 }
 
-// For each object, counts the triangles of other objects in its pairs, each triangle once. The
-// pairs (a, b) are sorted, with a < b, and the triangles of an object have consecutive numbers. So
-// all pairs whose a is in one object are consecutive. All pairs of one a with the triangles of one
-// object are consecutive, too. So two kinds of stored values reveal a repetition: for each triangle
-// b, the object of the last a that was paired with b; for each object of a b, the last a.
+// For each object, counts the triangles of other objects in the object's pairs, each triangle once.
+// The pairs (a, b) are sorted, a < b, and the triangles of an object have consecutive numbers. So
+// pairs whose a is in one object are consecutive, and pairs of one a with one object are
+// consecutive. The triangle b was counted before if the previous pair of b has an a in the same
+// object. The triangle a was counted before if the previous pair of b's object has the same a.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
                std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);

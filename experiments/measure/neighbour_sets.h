@@ -1,6 +1,6 @@
-// Potential neighbour sets (PNS). The set of an object has the other objects that may be nearest to
-// it, and those of their triangles that may be nearest. Four methods compute such sets. The sizes
-// of the sets are compared. Exact distances show which nearest neighbours a method loses.
+// Computes potential neighbour sets (PNS) by four methods. The set of an object contains the other
+// objects that may be nearest to the object, and the triangles that may be nearest. This file also
+// counts the sizes of the sets, and the exact nearest neighbours that a method loses.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace farcull {
 /// The objects nearest to one object. All have the same distance by exact arithmetic.
 struct NearestObjects {
   std::vector<std::uint32_t> objects;   // ascending; empty if there is no other object
-  std::vector<TrianglePair> triangles;  // for each of `objects`, its first nearest pair
+  std::vector<TrianglePair> triangles;  // the first nearest pair with each of `objects`
 };
 
 /// Returns the nearest objects of each object, by exact arithmetic (verify/closest.h).
@@ -38,8 +38,8 @@ struct NeighbourOptions {
   NeighbourMethod method = NeighbourMethod::trees;
   int resolution = 64;   // cells of a Voronoi diagram along the longest side of the scene
   double widening = 1;   // for voronoi_reliable (VoronoiOptions)
-  unsigned threads = 0;  // 0: one per core; the number changes no answer
-  std::uint64_t most_pairs = std::uint64_t{1} << 25;  // VoronoiOptions::most_pairs; 268 MB
+  unsigned threads = 0;  // 0: one per core; any number gives the same answer
+  std::uint64_t most_pairs = std::uint64_t{1} << 25;  // VoronoiOptions::most_pairs (268 MB)
 };
 
 /// The sets of all objects by one method. The triangles are in `pairs` or in `left`.

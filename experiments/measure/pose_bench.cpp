@@ -1,5 +1,5 @@
-// Times frames in which the first object turns a little. New calls of the library, one Collider and
-// peers run in turn. In each frame, their pairs are compared with the pairs of a new call.
+// Times frames in which the first object turns a little. A new call of the library, a Collider and
+// the peers run in turn. In each frame, all pairs are compared with the pairs of the new call.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ RigidMotion turned(const Box& box, int frame) {
 
 // A scene as input of the library. Objects without triangles are left out.
 struct Arrays {
-  std::vector<std::uint32_t> objects, starts;  // objects: their numbers in the scene
+  std::vector<std::uint32_t> objects, starts;  // objects: numbers of the objects in the scene
   Input input;
 
   explicit Arrays(const Scene& scene) : objects(objects_with_triangles(scene)) {
@@ -66,7 +66,7 @@ struct Contestant {
   std::vector<double> cpu_ms = {};
 };
 
-// Returns the motions of all objects in a frame.
+// A function that returns the motions of all objects in a frame.
 using Frames = std::function<std::span<const RigidMotion>(int frame)>;
 
 std::vector<Contestant> ours(const Scene& scene, const PoseBenchOptions& options,

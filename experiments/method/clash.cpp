@@ -58,10 +58,10 @@ class Objects {
     return facts.parts;
   }
 
-  /// Returns `contained` if a connected part of `inner` is inside `outer`, `clear` if none is, and
-  /// `unknown` if this is undecided, for example because `outer` is not closed. Unless the result
-  /// is `clear`, sets `point` to a corner of that part. Precondition: the surfaces do not meet, so
-  /// one point decides for its whole part (experiments/method/distances.cpp).
+  /// Returns `contained` if a connected part of `inner` is inside `outer`, `clear` if no part is
+  /// inside, and `unknown` if this is undecided, for example because `outer` is not closed. Unless
+  /// the result is `clear`, sets `point` to a corner of that part. Precondition: the surfaces do
+  /// not meet, so one point decides for a whole part (experiments/method/distances.cpp).
   ClashVerdict containment(std::uint32_t outer, std::uint32_t inner, Vec3& point) const {
     const Object& object = scene_.objects[inner];
     bool any = false;
@@ -99,7 +99,7 @@ class Objects {
   std::vector<Box> boxes_;
 };
 
-/// The pairs of triangles that meet, sorted by their objects, and one row for each pair of objects.
+/// The pairs of triangles that meet, sorted by objects, and one row for each pair of objects.
 struct Meetings {
   std::vector<TrianglePair> pairs;
   std::vector<ClashRow> rows;
@@ -362,8 +362,8 @@ std::vector<ClashRow> apart_rows(const Scene& scene, const Objects& objects,
   return rows;
 }
 
-/// True if x comes before y. Rows that are not ignored come first. Then these decide in turn: the
-/// verdict, a smaller distance, a larger depth, a longer curve, lower numbers of the objects.
+/// True if x comes before y. Rows that are not ignored come first. Rows are then sorted by verdict,
+/// smaller distance, larger depth, longer curve, and lower numbers of the objects.
 bool more_serious(const ClashRow& x, const ClashRow& y) {
   if (x.ignored != y.ignored) return y.ignored;
   if (x.verdict != y.verdict) return x.verdict < y.verdict;

@@ -40,7 +40,7 @@ struct ClashOptions {
   std::optional<std::vector<ObjectPair>> only = {};  // examines only these; sorted by in_order()
   double tolerance = 0;  // world units, finite, >= 0; a depth or gap <= this is a touch
   bool depth = false;    // bounds the depth of clashes, which is slow with many triangles
-  unsigned threads = 0;  // 0: one per core; the answer does not depend on it
+  unsigned threads = 0;  // 0: one per core; any number gives the same answer
 };
 
 struct ClashRow {
@@ -75,7 +75,7 @@ struct ClashRecord {
   std::uint64_t examined = 0;      // pairs in `asked` whose two objects have triangles
   std::uint64_t ignored = 0;       // ignored pairs
   std::uint64_t ignored_meet = 0;  // ignored pairs with a row that is not `near`
-  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // `examined`, by verdict
+  std::array<std::uint64_t, kClashVerdicts.size()> verdicts = {};  // examined pairs, by verdict
   std::uint64_t within_tolerance = 0;  // pairs that touch only because of the tolerance
   std::vector<std::uint32_t> empty;    // objects without triangles
   /// At most 100 pairs of objects that may be copies of one part. They have the same number of

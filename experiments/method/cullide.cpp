@@ -151,7 +151,7 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
   out.by = std::move(views);
 }
 
-// Compares boxes of objects, as published, to find the triangles and the regions to draw.
+// Compares boxes of objects, as in the papers, to find the triangles and the regions to draw.
 void find_places(const Scene& scene, unsigned threads, Plan& plan, DrawPlan& work) {
   const RunOptions& options = plan.options;
   if (!work.self && has_self(scene)) {

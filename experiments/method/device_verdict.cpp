@@ -70,7 +70,7 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
 
 namespace fs = std::filesystem;
 
-// Prefixes of environment variables that change the code Mesa's and NVIDIA's drivers generate.
+// Prefixes of environment variables that change the code that drivers of Mesa and NVIDIA generate.
 constexpr std::array kDriverVariables = {
     "LP_",    "GALLIVM_", "GALLIUM_", "MESA_",    "LIBGL_", "NIR_",  "ST_",   "DRAW_",
     "TGSI_",  "INTEL_",   "IRIS_",    "ANV_",     "AMD_",   "RADV_", "ACO_",  "R600_",
@@ -84,7 +84,7 @@ std::string driver_environment() {
     const std::string variable = *at;
     const auto named = [&](const char* prefix) { return variable.starts_with(prefix); };
     // Mesa also reads each driconf option from an environment variable with the option's lower-case
-    // name. So all variables in lower case are used, except `_` and proxy settings.
+    // name. So all variables without capitals are inputs, except `_` and proxy settings.
     const std::string name = variable.substr(0, variable.find('='));
     const bool may_be_driconf =
         std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }) && name != "_" &&
@@ -167,8 +167,8 @@ std::optional<DeviceVerdict> read(const std::string& file, const std::string& in
   return out;
 }
 
-// Writes the file. Returns the reason of a failure, or "". A reader sees either the old file or the
-// new file, never a partial one.
+// Writes the file. Returns why this failed, or "". A reader sees either the old file or the new
+// file, never a partial file.
 std::string write(const std::string& file, const std::string& text) {
   if (file.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
   const std::string beside = file + "." + std::to_string(::getpid());

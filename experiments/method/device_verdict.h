@@ -15,8 +15,8 @@
 
 namespace farcull {
 
-// Probes of assumption A4. Each kernel that farcull uses runs on the device. Its answers are
-// compared with rational bounds (verify/kernel_check.h).
+// Probes of assumption A4. Each kernel that farcull uses runs on the device. The answers of the
+// kernels are compared with rational bounds (verify/kernel_check.h).
 
 /// A kernel of an offset: its program, two functions that make test cases (fattened triangles, and
 /// solids with random floats), and the check of an answer.
@@ -37,7 +37,7 @@ struct KernelProbeOptions {
   bool late_stores = false;  // the probe stores the solid of the next case
 };
 
-/// Probes solid_interval of the two offsets. A probe fails if a solid was lost, if too many answers
+/// Probes the kernels of the two offsets. A probe fails if a solid was lost, if too many answers
 /// are too wide, if nothing was checked, or if an Error is thrown. Makes the context current.
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options = {});

@@ -204,7 +204,7 @@ ProximityTrees trees_of(const Scene& scene, unsigned threads) {
   });
 }
 
-// questions: number of pairs of objects; left: number of remaining pairs of triangles.
+// questions: number of pairs of objects. left: number of pairs of triangles that remain.
 void add_near_stage(std::size_t questions, std::uint64_t left, double ms, DistanceRecord& record) {
   record.trace.push_back({.kind = StageKind::near,
                           .ran = true,

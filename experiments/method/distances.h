@@ -62,7 +62,7 @@ struct DistanceOptions {
   std::size_t k = 1;                                        // only for `nearest`
   double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
   bool inside = true;    // find whether one object is inside the other
-  unsigned threads = 0;  // 0: one per core; the answer does not depend on it
+  unsigned threads = 0;  // 0: one per core; any number gives the same answer
   bool verify = false;   // check every pair exactly (account_distances())
   /// The largest number of answers. More answers are an error, since each answer takes some
   /// hundreds of bytes.
@@ -81,8 +81,8 @@ struct Distance {
   WhichInside inside = WhichInside::unknown;
 };
 
-/// The nearest pairs of the previous frame, sorted by objects. Using them as bounds saves time, and
-/// never changes an answer.
+/// The nearest pairs of the previous frame, sorted by objects. These pairs give bounds, which save
+/// time and never change an answer.
 using DistanceMemory = std::vector<NearHint>;
 
 struct DistanceRecord {
@@ -118,8 +118,8 @@ std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 /// Returns the answers of the record as claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
-/// Computes the distances that the options select. memory: holds the nearest pairs of the previous
-/// frame, and on return those of this frame; may be null. Throws Error if options are bad, if they
+/// Computes the distances that the options select. memory: the nearest pairs of the previous frame;
+/// on return the nearest pairs of this frame; may be null. Throws Error if options are bad, if they
 /// select no pair of triangles, or if there are more answers than most_pairs allows. Throws
 /// std::logic_error if validate() would not accept the scene.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,

@@ -38,7 +38,7 @@ class Session;      // session.h
 using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
                           Plan& plan);
 /// Runs the method: finds the candidates of the planned scene. take: receives the candidates of a
-/// tree of boxes as they are found (Candidates::streamed). If `take` is empty, they are listed.
+/// tree of boxes as they are found (Candidates::streamed); if empty, the candidates are listed.
 using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
                                 const Progress& progress, const TakePairs& take);
 

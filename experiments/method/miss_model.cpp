@@ -1,8 +1,8 @@
-// In each view, the part of triangle A that triangle B hides is a polygon. It is the common part of
-// the images of A and B, cut at the line where their planes have equal depths. A view keeps a
-// triangle if a pixel centre lies in a hidden part of the triangle. The probability of this follows
-// from the area, the width and the height of the part. A pair is found if every view keeps each of
-// its two triangles.
+// Predicts how many pairs a method that draws misses. In each view, triangle B hides a polygon of
+// triangle A: the common part of both images, cut at the line where the planes have equal depths. A
+// view keeps a triangle if a pixel centre lies in a hidden part of the triangle. The probability of
+// this event follows from the area, the width and the height of the part. A pair is found if every
+// view keeps both triangles.
 #include "experiments/method/miss_model.h"
 
 #include <algorithm>
@@ -18,13 +18,13 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kMostParts = std::size_t{1} << 22;  // largest number of parts in a view
-// The largest number of rounds in solve() if the options set no limit. Mostly ten rounds suffice.
+// The largest number of rounds in solve() if the options set no limit. Ten rounds usually suffice.
 // Tens of rounds are needed if each culled triangle uncovers the next triangle.
 constexpr int kMostRepeats = 200;
 // Standard deviation (px) of the change that snapping makes to a triangle's height over its longest
 // edge. Snapping moves corners to multiples of 2^-b px (b: kNativeSubpixelBits). So the error along
-// each axis has the variance 4^-b / 12. The variance of the height is 5/3 of that, averaged over
-// the positions of the height's foot.
+// each axis has the variance 4^-b / 12. The variance of the height is 5/3 times as large,
+// averaged over the positions of the height's foot.
 const double kSnapped = std::sqrt(5.0 / 36) / (1 << kNativeSubpixelBits);
 
 struct Point2 {
@@ -98,7 +98,7 @@ Polygon hull(std::vector<Point2> of) {
   return {std::move(out)};
 }
 
-// Returns the sizes of an image along two axes in which the image is compact. Axes with integer
+// Returns the sizes of an image along two axes in which both sizes are small. Axes with integer
 // components and the determinant 1 map pixel centres to pixel centres. So the probability that the
 // image contains a centre is the same in all such axes. In suitable axes, a needle in the direction
 // (2, 3) is a narrow strip. Lagrange's reduction, applied to the moments of the corners, finds
@@ -138,7 +138,7 @@ struct Image {
   double snapped = 1;  // factor by which snapping changes the expected area of a thin image
 };
 
-// Returns E|w + s N| / w for w = width, s = kSnapped and a standard normal N.
+// Returns the expected value of |w + s N| / w, for w = width, s = kSnapped and a standard normal N.
 double snapped_share(double width) {
   const double z = width / kSnapped;
   if (z > 10) return 1;
@@ -204,14 +204,14 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
   return out;
 }
 
-// The part of triangle `of` that triangle `by` hides. Parts that overlap in one axis form a place
-// (find_places()).
+// The part of triangle `of` that triangle `by` hides. Parts that overlap along one axis form a
+// place (find_places()).
 struct Part {
   std::uint32_t of = 0, by = 0;
   double share = 0;  // area of the part / area of the image in the place
   Range x, y;
   double place = 0;  // area of the image in the place; 0 except in the place's first part
-  double strip = 0, width = 0, height = 0;  // area, sides of the region where each hides the other
+  double strip = 0, width = 0, height = 0;  // region where each hides the other: area, sides
 };
 
 struct ViewOfParts {

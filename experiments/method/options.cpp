@@ -19,7 +19,7 @@ const std::vector<std::string> kOffsets = {
 
 bool is_distance(double value) { return value >= 0 && std::isfinite(value); }
 
-// True if the text has the form of a device's name. Does not look for the device.
+// True if the text has the form of a device's name. Does not check that the device exists.
 bool is_device(const std::string& device) {
   return device.empty() || is_cpu(device) || device == "gl" || device == "hardware" ||
          device == "software" || device.find_first_not_of("0123456789") == std::string::npos;
@@ -39,7 +39,7 @@ bool take_number_from(T least, const std::string& text, T& value) {
   return true;
 }
 
-// The two values of an option, and their words.
+// An option with two values. Each value has a word on the command line.
 template <class Value>
 struct Choice {
   const char* first;
@@ -70,7 +70,7 @@ void copy_value(const RunOptions& from, RunOptions& to) {
   to.*Member = from.*Member;
 }
 
-// Reads "none", or a descending list of sizes with commas between.
+// Reads "none", or sizes in descending order, separated by commas.
 bool take_clusters(const std::string& text, RunOptions& options) {
   std::vector<std::uint32_t> sizes;
   for (const std::string& part : text == "none" ? std::vector<std::string>() : split_list(text)) {
@@ -102,7 +102,7 @@ bool take_device(const std::string& text, RunOptions& options) {
   return is_device(text);
 }
 
-// Functions for Option::serves. Each returns true for the methods that have the option.
+// Functions for Option::serves. Each returns true for the methods that accept the option.
 bool any(const Traits&) { return true; }
 bool fattening(const Traits& t) { return t.fattens; }
 bool drawing(const Traits& t) { return t.draws; }
@@ -352,7 +352,7 @@ const Option kOptions[] = {
     // A new option goes here.
 };
 
-// Throws Error for a given option that the method does not have, instead of ignoring it.
+// Throws Error for an option that the method does not accept, instead of ignoring the option.
 void refuse_idle(const RunOptions& options, const GivenOptions& given) {
   const Traits& method = traits(options.method);
   for (const Option& option : run_options()) {
@@ -381,7 +381,7 @@ const Option& run_option(std::string_view name) {
 
 std::string option_word(const std::string& name) {
   if (name == "doctor" || name == "run") return "farcull " + name;  // commands, not options
-  // These options belong to single commands.
+  // Names of options that run_options() lacks, since each belongs to a single command.
   static constexpr std::string_view kOthers[] = {"certificate", "compare", "inside", "no_verify",
                                                  "pairs",       "repeat",  "within"};
   if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&
@@ -418,7 +418,7 @@ int parse_repeat(const std::string& text) {
 
 RunOptions read_options(const GivenOptions& given, RunOptions options) {
   options.method_is_default = !given.contains("method");
-  for (const Option& option : run_options()) {  // the method comes first in the table
+  for (const Option& option : run_options()) {  // `method` is the first option in the table
     const auto found = given.find(option.name);
     if (found != given.end() && option.take) take_option(option.name, found->second, options);
   }
@@ -479,8 +479,8 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 QueryMode query_of(const RunOptions& options) {
-  // Methods that test objects only against themselves draw one step for each triangle. With flags,
-  // the program would have to wait for the device after every step.
+  // Methods that test objects only against themselves draw triangle by triangle. QueryMode::flags
+  // would make the program wait for the device after every triangle.
   const bool steps = tests_self_alone(options.method);
   const bool flags = options.depth_format == DepthFormat::float32 && !steps;
   return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);

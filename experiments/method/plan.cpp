@@ -1,4 +1,4 @@
-// Each method plans the search for candidates. The exact tests and the accounting are planned here.
+// Plans a run. Each method plans its search for candidates. The later stages are planned here.
 #include "experiments/method/plan.h"
 
 #include <utility>

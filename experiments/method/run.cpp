@@ -1,4 +1,4 @@
-// One function for each stage fills a part of the record. run() calls these functions in order.
+// Fills a record. Each stage is one function that fills a part. run() calls the stages in order.
 #include "experiments/method/run.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace farcull {
 namespace {
 
-// Decides each candidate in the thread that found it. marks: true to record their triangles.
+// Decides candidates as soon as they are found. marks: true to record their triangles.
 class StreamingDecider {
  public:
   StreamingDecider(const Scene& scene, const Plan& plan, const ExactQuestion& question, bool marks)
@@ -50,7 +50,7 @@ class StreamingDecider {
     ms_ += watch.ms();
   }
 
-  // Moves the answers to `found`. Subtracts the time of deciding from the stage of finding.
+  // Moves the answers to `found`. Subtracts the time of deciding from the time of finding.
   void finish(Candidates& found) {
     const Stopwatch watch;
     if (threads_.size() > 1) ms_ /= static_cast<double>(threads_.size());
@@ -77,14 +77,14 @@ class StreamingDecider {
   std::vector<std::uint8_t> kept_;  // 1 for a triangle of a candidate; empty if `marks` is false
   std::mutex mutex_;                // guards all members below
   GatheredPairs pairs_, neighbour_pairs_;
-  Collisions counts_;  // without pairs until finish()
+  Collisions counts_;  // has no pairs until finish() adds them
   std::uint64_t ignored_ = 0;
   std::set<std::thread::id> threads_;
   double ms_ = 0;  // time of deciding, summed over the threads
 };
 
-// True if a tree of all boxes finds more than kMostListed candidates. A run with a limit then calls
-// search_first() instead of listing all candidates.
+// True if the plan searches a tree of boxes and the tree has more than kMostListed candidates. A
+// run with a limit then calls search_first() instead of listing all candidates.
 bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& question,
                 unsigned threads) {
   constexpr std::uint64_t kMostListed = std::uint64_t{1} << 22;
@@ -108,8 +108,8 @@ bool is_crowded(const Scene& scene, const Plan& planned, const ExactQuestion& qu
   return listed > kMostListed;
 }
 
-// Tests candidates in the order of pairs until options.limit pairs collide. Ends after about
-// kMostSearched + 16 * limit candidates, since few of the candidates may collide.
+// Tests candidates in the order of pairs until options.limit pairs collide. Gives up after about
+// kMostSearched + 16 * limit candidates, since the scene may have too few colliding pairs.
 void search_first(const Scene& scene, const Session& session, const Progress& progress,
                   const ExactQuestion& question, Record& record) {
   constexpr std::uint64_t kMostSearched = std::uint64_t{1} << 24;
@@ -145,7 +145,7 @@ void search_first(const Scene& scene, const Session& session, const Progress& pr
                           .unit = Unit::pairs});
 }
 
-// Plans the run and finds candidates. The plan's memory is freed before the next stages.
+// Plans the run and finds candidates. Frees the memory of the plan before it returns.
 void find_stage(const Scene& scene, Session& session, const Progress& progress,
                 const ExactQuestion& question, const RunUse& use, Record& record) {
   const Stopwatch comparing;
@@ -156,7 +156,7 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
       plan(scene, record.options, session.threads(), progress, memory, use.decided);
   record.options = planned.options;
   record.plan = planned.stages();
-  // A filter and a limit need the list of all candidates.
+  // A filter needs the list of all candidates. A limit needs the list unless search_first() runs.
   const bool filters = static_cast<bool>(use.filter), limits = record.options.limit > 0;
   if (limits && !filters && !memory &&
       is_crowded(scene, planned, question, session.cpu_threads())) {
@@ -172,10 +172,10 @@ void find_stage(const Scene& scene, Session& session, const Progress& progress,
   record.ms.cull = compared_ms + planned.ms + record.found.ms;
 }
 
-// Decides the candidates. If they were decided as they were found, uses these answers.
+// Decides the candidates by exact tests, unless find() has decided them.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress,
                   const ExactQuestion& question, bool keeps_frames, Record& record) {
-  if (record.limited) return;  // search_first() has decided
+  if (record.limited) return;  // search_first() has decided the candidates
   const RunOptions& options = record.options;
   Stage stage{.kind = StageKind::exact,
               .depends = !options.full && culls(options.method),
@@ -214,7 +214,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     memory->moved.notify(mostly_unmoved(memory->moved, record.found.pairs));
 }
 
-// If options.verify is set, accounts for every pair that the exact tests did not decide.
+// If options.verify is set, counts the colliding pairs that the method missed.
 void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
   Stage stage{.kind = StageKind::verify,
               .reason = record.limited ? Reason::limited : Reason::not_asked,
@@ -240,8 +240,8 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
-// Returns the guarantee of the method on the device that was used. If this throws, the session
-// forgets its device.
+// Returns the guarantee of the method on the device that was used. If session.verdict() throws, the
+// session forgets its device.
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
   Promise promise;
   promise.holds = guaranteed(options);
@@ -322,7 +322,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     use.filter(found.pairs);
     found.count = found.pairs.size();
   }
-  // If the method returns only pairs, the triangles of the pairs are counted here.
+  // If the method returned only pairs, the triangles of the pairs are listed here.
   const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
   if (only_pairs && !use.answer_only) {
     found.triangles = members_of(found.pairs, scene.triangles.size());
@@ -333,10 +333,10 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
   // A method that culls nothing decides all pairs, so the limit is applied here. For other methods
-  // decide() has applied the limit.
+  // decide_stage() has applied the limit.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
-  require_proved("arithmetic");  // code of a driver may have changed this thread's settings
+  require_proved("arithmetic");  // a driver may have changed the rounding mode of this thread
   record.used = floating_point();
   return record;
 }

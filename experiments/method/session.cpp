@@ -33,7 +33,7 @@ const CanvasDevice& Session::canvas_device() {
   return *canvas_device_;
 }
 
-// Chooses GL or the CPU. If no device was named and GL fails, chooses the CPU.
+// Chooses GL or the CPU. Without a named device, GL is chosen only if a GPU passes the probes.
 CanvasDevice Session::choose_device() {
   const std::string named = spelled("{device} ") + device_;
   if (is_cpu(device_)) return {true, named};
@@ -72,7 +72,7 @@ int Session::max_resolution() {
 void Session::forget_device() {
   canvases_.clear();
   context_.reset();
-  verdict_.reset();  // the next device may be another one
+  verdict_.reset();  // the next context may be on another device
   canvas_device_.reset();
   frame_memory_ = {};
   if (frames_) remember_frames();

@@ -19,7 +19,7 @@
 
 namespace farcull {
 
-/// Returns a function that clears the line of progress and writes a line on standard error.
+/// Returns a function that clears the progress line, then writes a line to standard error.
 Say say_on_stderr();
 
 /// The kind of canvas that draws, and why it was chosen.
@@ -28,13 +28,13 @@ struct CanvasDevice {
   std::string reason;
 };
 
-/// Makes each device, context and canvas when a run first needs it, and keeps it for later runs.
+/// Makes devices, contexts and canvases when a run first needs them, and keeps them for later runs.
 /// Two threads must not use a Session at once.
 class Session {
  public:
-  /// device: as RunOptions::device. If it is empty, GL is used if there is a hardware device that
-  /// keeps the assumptions (device_verdict.h), else the cores of the CPU. threads: CPU threads; 0:
-  /// as many as there are cores. say: as in device_verdict(); may be empty.
+  /// device: as RunOptions::device; "": GL if a hardware device keeps the assumptions
+  /// (device_verdict.h), else the cores of the CPU. threads: number of CPU threads; 0: as many as
+  /// there are cores. say: as in device_verdict(); may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
@@ -44,17 +44,17 @@ class Session {
     return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
   }
   const GlContext& context();
-  /// Returns whether the device of context() keeps the assumptions. Probes the device if no verdict
-  /// is stored in a file. Does not restore the GL state.
+  /// Returns whether the device of context() keeps the assumptions of the guarantee. Probes the
+  /// device if no file has a verdict. Does not restore the GL state.
   const DeviceVerdict& verdict();
   const CanvasDevice& canvas_device();
-  /// Returns the canvas for this fattener and these options. The first call makes the canvas. Only
-  /// GL has query modes.
+  /// Returns the canvas for this fattener and these options. The first call makes the canvas. A
+  /// canvas on the CPU does not use options.query.
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
-  /// Returns the largest resolution of canvases in px.
+  /// Returns the largest resolution that a canvas supports, in px.
   int max_resolution();
   /// Declares that the following runs are consecutive frames of one scene. The method `boxes` and
-  /// the exact tests then reuse results about triangles that did not move. Answers stay the same.
+  /// the exact tests then reuse results for triangles that did not move. The answers are the same.
   void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
   /// Returns null if remember_frames() was not called.
   FrameMemory* frame_memory() { return frames_ ? &frame_memory_ : nullptr; }

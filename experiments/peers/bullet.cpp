@@ -1,8 +1,8 @@
 // Bullet's tree of boxes (btGImpactBvh of GImpact) in double. This file computes the boxes. Pairs
-// of leaves that meet are candidates. Bullet's test of two triangles is not used, since it rounds.
+// of leaves with overlapping boxes are candidates. Bullet's triangle test rounds and is not used.
 //
 // Bullet's find_collision() is not called, since it stores all pairs and has one thread. It also
-// compares rounded centres and extents with a tolerance, so it can lose small boxes that touch far
+// compares rounded centres and extents with a tolerance, so it can miss small boxes that touch far
 // from the origin. Instead search_trees() compares nodes with btAABB::has_collision(), which does
 // not round. Bullet's quantized tree is not used, since it may round boxes inward.
 #include <BulletCollision/Gimpact/btGImpactBvh.h>
@@ -28,7 +28,7 @@ class Boxes : public btPrimitiveManagerBase {
     box.m_min.setValue(from.lo.x(), from.lo.y(), from.lo.z());
     box.m_max.setValue(from.hi.x(), from.hi.y(), from.hi.z());
   }
-  void get_primitive_triangle(int, btPrimitiveTriangle&) const override {}  // for narrow phases
+  void get_primitive_triangle(int, btPrimitiveTriangle&) const override {}  // narrow phases only
 
  private:
   std::span<const Box> boxes_;
@@ -37,7 +37,7 @@ class Boxes : public btPrimitiveManagerBase {
 /// A tree of boxes with the interface for search_trees(). Primitive i is triangle first + i.
 class BulletTree {
  public:
-  /// Precondition: at least one box. The boxes are not kept.
+  /// Precondition: at least one box. `boxes` is used only by the constructor.
   BulletTree(std::span<const Box> boxes, std::uint32_t first)
       : tree_(std::make_unique<btGImpactBvh>()), first_(first) {
     Boxes asked(boxes);

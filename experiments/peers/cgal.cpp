@@ -1,4 +1,4 @@
-// CGAL, in two ways.
+// CGAL as a broad phase and for distances.
 // - Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software for box
 //   intersections, 2002) and AABB_tree. CGAL only compares boxes and gives candidates.
 // - Distances, by AABB_tree.
@@ -57,7 +57,7 @@ Handles handles(const std::vector<PeerBox>& boxes) {
   return all;
 }
 
-/// Joins all boxes in one call of box_intersection_d, as in CGAL's manual.
+/// Finds all overlapping boxes in one call of box_intersection_d, as in CGAL's manual.
 template <std::ptrdiff_t cutoff>
 BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
   PeerCandidates candidates(raw, threads, false);
@@ -94,15 +94,15 @@ std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const
   return inside;
 }
 
-/// Joins boxes of triangles for each pair of objects, and for each `self` object with itself. Only
-/// boxes that meet the common part of the objects' boxes are joined.
+/// Finds overlapping triangle boxes for each pair of objects, and within each `self` object. Only
+/// boxes that overlap the intersection of the two objects' boxes are compared.
 BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   // With one pair of objects, only the exact decisions can be divided over threads.
   const bool parallel = threads > 1 && raw.objects.size() > 2;
   PeerCandidates candidates(raw, threads, parallel);
   const PeerScene scene(raw);
   const std::vector<Box> regions = object_boxes(raw, scene.boxes);
-  std::vector<TrianglePair> meeting;  // pairs of objects; an object with itself if it is `self`
+  std::vector<TrianglePair> meeting;  // pairs of objects, and (o, o) for each `self` object o
   for (std::uint32_t o = 0; o < raw.objects.size(); ++o) {
     if (raw.objects[o].self) meeting.push_back({o, o});
   }
@@ -142,7 +142,7 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
   return candidates.finish();
 }
 
-/// Finds the triangles whose boxes meet the box of a query.
+/// Collects the triangles whose boxes overlap the query box.
 template <class Found>
 struct Walk {
   Found found;
@@ -156,14 +156,14 @@ struct Walk {
   }
 };
 
-/// Searches a tree for the box of each triangle. If only two objects are tested against each other
-/// (PeerScene::two_sides), the tree has the smaller object's triangles, and the larger object's
-/// triangles are searched for. Else the tree has all triangles, and each is searched for.
+/// Searches a tree for the boxes that overlap each triangle's box. If only two objects are tested
+/// against each other (PeerScene::two_sides), the tree has the smaller object's triangles, and the
+/// queries are the larger object's triangles. Else all triangles are in the tree, and are queries.
 BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const PeerScene scene(raw);
   const std::size_t count = raw.triangles.size();
-  std::size_t begin = 0, end = count;  // the triangles in the tree
+  std::size_t begin = 0, end = count;  // range of the triangles in the tree
   if (scene.two_sides) (scene.second < count - scene.second ? end : begin) = scene.second;
   Triangles triangles;
   triangles.reserve(end - begin);
@@ -199,8 +199,8 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
 }
 
 // Distances between the triangles of one object and the AABB_tree of another object. CGAL's
-// distance functions of a tree take only a point. So the tree's traversal is called here with a
-// triangle and the least distance so far. The traversal skips nodes whose boxes are farther away.
+// distance functions of a tree accept only points. So the code below calls the tree's traversal
+// with a triangle and the least distance so far. Nodes whose boxes are farther away are skipped.
 
 double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
   double sum = 0;
@@ -243,13 +243,13 @@ struct TreeOfObject {
   Tree tree;
 };
 
-/// Returns the squared distance of a and b if it is below `most`, else `most`.
+/// Returns the squared distance of a and b, or `most` if the squared distance is larger.
 double squared_distance_of(const TreeOfObject& a, const TreeOfObject& b, double most) {
   if (squared_gap(a.box, b.box) >= most) return most;
   const TreeOfObject& asked = a.triangles.size() < b.triangles.size() ? a : b;
   const TreeOfObject& tree = &asked == &a ? b : a;
   double least = most;
-  // The distance of one corner from the tree is a first bound.
+  // The distance of one corner from the tree is the first upper bound.
   const double first = tree.tree.squared_distance(asked.triangles.front()[0]);
   if (first < least) least = std::nextafter(first, HUGE_VAL);
   for (const Triangle& triangle : asked.triangles) {
@@ -282,7 +282,7 @@ std::vector<std::unique_ptr<TreeOfObject>> trees_of(const Scene& scene, unsigned
   return out;
 }
 
-/// Returns the nearest other tree of each tree. most: larger squared distances do not count.
+/// For each tree, returns the nearest other tree. Only squared distances below `most` count.
 std::vector<PeerDistance> nearest(const std::vector<std::unique_ptr<TreeOfObject>>& trees,
                                   double most, unsigned threads) {
   std::vector<PeerDistance> out(trees.size());

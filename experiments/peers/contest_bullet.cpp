@@ -23,7 +23,7 @@ constexpr const char* kType = "double";
 constexpr const char* kType = "float";
 #endif
 
-/// An object in Bullet. Bullet keeps pointers to the arrays of this class.
+/// An object in Bullet. Bullet keeps pointers to the members of this class.
 class Body {
  public:
   Body(const Scene& scene, const Object& object, bool with_margin) {
@@ -63,7 +63,7 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int,
                            int triangle_a, const btCollisionObjectWrapper*, int,
                            int triangle_b) override {
-    if (point.getDistance() > 0) return 0;  // the triangles are near, but not in contact
+    if (point.getDistance() > 0) return 0;  // the triangles are near each other, but not in contact
     if (a->getCollisionObject() != first) std::swap(triangle_a, triangle_b);
     pairs.emplace_back(triangle_a, triangle_b);
     return 0;
@@ -73,8 +73,8 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
 class World {
  public:
   World() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
-    // registerAlgorithm() is enough for a simulation. contactPairTest() also needs
-    // registerClosestPointsCreateFunc().
+    // registerAlgorithm() alone is enough for a simulation. contactPairTest() needs
+    // registerClosestPointsCreateFunc(), too.
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE,
                                                 &create_);
@@ -113,7 +113,7 @@ std::vector<TrianglePair> meshes(const Scene& scene, bool with_margin) {
   return out;
 }
 
-/// margin: in units; triangles at most this far apart are reported. 0: no shape has a margin.
+/// margin: world units. Triangles at most this far apart are reported. 0: shapes have no margin.
 Contestant contestant(const std::string& name, double margin) {
   ContestantCard card =
       crossing_card(name + kType, "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
@@ -129,7 +129,7 @@ Contestant contestant(const std::string& name, double margin) {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  // By Bullet's manual, a shape has a margin of 0.04, so two shapes have 0.08 together.
+  // According to Bullet's manual, each shape has a margin of 0.04. Two shapes have 0.08 together.
   return contest(argc, argv,
                  {contestant("bullet-gimpact-", 0), contestant("bullet-gimpact-margin-", 0.08)});
 }

@@ -47,8 +47,8 @@ bool do_intersect(const SuitePair& pair) {
   return CGAL::do_intersect(triangle<Kernel>(pair.a), triangle<Kernel>(pair.b));
 }
 
-/// Adds a face. A triangle that is oriented unlike its neighbours is reversed. Throws Refusal if
-/// more than two triangles would have an edge in common.
+/// Adds a face. Reverses a triangle whose orientation differs from its neighbours' orientation.
+/// Throws Refusal if more than two triangles would have an edge in common.
 void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
   const auto& [a, b, c] = corners;
   if (a == b || b == c || c == a)
@@ -97,7 +97,7 @@ bool mesh_pair(const SuitePair& pair) {
   return PMP::do_intersect(meshes[0], meshes[1]);
 }
 
-/// For each pair of objects, searches a tree of the second object for the first one's triangles.
+/// For each pair (a, b) of objects, finds the triangles of b that each triangle of a intersects.
 std::vector<TrianglePair> tree_scene(const Scene& scene) {
   using Triangles = std::vector<Exact::Triangle_3>;
   using Primitive = CGAL::AABB_triangle_primitive<Exact, Triangles::const_iterator>;

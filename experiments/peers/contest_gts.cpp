@@ -36,8 +36,8 @@ class Surface {
   }
 
  private:
-  /// Returns vertex v, and makes the vertex when its first face is made. GTS destroys only vertices
-  /// of faces, so a vertex without a face must not be made.
+  /// Returns vertex v. Makes the vertex when a face first uses it, since GTS destroys only vertices
+  /// that belong to faces.
   GtsVertex* vertex(const Scene& scene, std::uint32_t v) {
     const Vec3& p = scene.vertices[v];
     if (vertices_[v] == nullptr)
@@ -56,7 +56,7 @@ class Surface {
 
   GtsSurface* surface_;
   std::vector<GtsVertex*> vertices_;
-  std::unordered_map<void*, std::uint32_t> number_;  // from a face to the number of its triangle
+  std::unordered_map<void*, std::uint32_t> number_;  // from a GtsFace to the number of its triangle
   std::vector<TrianglePair> found_;
 };
 

@@ -20,9 +20,9 @@ std::string device() {
   return named != nullptr && *named != '\0' ? named : "native";
 }
 
-/// Returns, sorted, the pairs of triangles of one object that share a vertex position, but no
-/// vertex index. For farcull such triangles are neighbours, reported only if they share more than
-/// the position. A suite compares indices, so for a suite they are triangles that touch.
+/// Returns the pairs of triangles of one object that share a vertex position, but no vertex index;
+/// sorted. For farcull these triangles are neighbours, for which touching does not count. A suite
+/// defines neighbours by vertex indices. So a suite expects these pairs as touching triangles.
 std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> at;
   for (const Object& object : scene.objects) {
@@ -51,13 +51,13 @@ std::vector<TrianglePair> touching_strangers(const Scene& scene) {
   return out;
 }
 
-/// Returns the pairs that a method reports, and touching_strangers(), which a suite counts.
+/// Returns the pairs that a method reports, plus touching_strangers(), which a suite expects.
 std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
   static Session session(device(), 1, {});
   if (draws(options.method)) options.device = device();
   options.verify = false;
-  // The first drawing probes a software renderer, which takes long. Only the first answer of a
-  // process may take long, so two triangles are always drawn with that answer.
+  // The first run on a software renderer probes the device, which takes long. A suite allows only
+  // the first answer to take long. So the first call always draws two triangles.
   [[maybe_unused]] static const Record probed =
       run(scene_of({.shared = {},
                     .a = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)},
@@ -70,7 +70,7 @@ std::vector<TrianglePair> pairs_by(RunOptions options, const Scene& scene) {
     const auto is_kept = [&](std::uint32_t t) {
       return std::binary_search(kept.begin(), kept.end(), t);
     };
-    // A method that draws has to keep each triangle of the pair. Other methods have no set `kept`.
+    // For a method that draws, a pair counts only if both triangles remain after culling.
     if (!draws(options.method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
   }
   return out;
@@ -116,8 +116,8 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
                     [options](const Scene& scene) { return pairs_by(options, scene); });
 }
 
-/// Returns a control for the result that far misses no pair: far with a smaller radius, which must
-/// miss pairs.
+/// Returns a control contestant: far with a smaller radius, which must miss pairs. Otherwise the
+/// result that far misses no pair would show nothing.
 Contestant far_at(const std::string& radius) {
   Contestant out =
       of_method(Method::far, "a control, which has to miss pairs", "nothing", parse_radius(radius));
@@ -136,7 +136,7 @@ bool clash_of(const Scene& scene) {
   return row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
 }
 
-/// Returns the method `exact`, with the exact tests of `farcull distance` and `farcull clash`.
+/// Returns a contestant: the method `exact`, with exact tests of distances and of clashes.
 Contestant exact() {
   Contestant out = of_method(Method::exact, "every pair whose boxes meet is decided exactly",
                              "the answer to compare with");
@@ -159,7 +159,7 @@ Contestant exact() {
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  ::setenv("LP_NUM_THREADS", "0", 0);  // the program farcull sets this, too (docs/drivers.md)
+  ::setenv("LP_NUM_THREADS", "0", 0);  // as in the program farcull (docs/drivers.md)
   const char* const reliable = "misses no pair; exact tests decide what is left";
   const Contestant boxes = contestant({.name = "boxes",
                                        .neighbours = true,

@@ -20,7 +20,7 @@ using Point = std::array<T, 3>;
 template <class T>
 using Corners = std::array<Point<T>, 3>;
 template <class T>
-using Flat = std::array<std::array<T, 2>, 3>;  // a triangle in two dimensions
+using Flat = std::array<std::array<T, 2>, 3>;  // corners of a triangle in the plane
 
 template <class T>
 Point<T> operator-(const Point<T>& a, const Point<T>& b) {
@@ -70,7 +70,7 @@ bool separated_by_edge(const Flat<T>& a, const Flat<T>& b) {
   return false;
 }
 
-/// True if two triangles overlap in a plane with the normal n. Drops the axis of n's largest entry.
+/// True if two coplanar triangles overlap. n: normal of their plane. Projects along n's main axis.
 template <class T>
 bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& b) {
   const int drop = longest_axis(n);
@@ -83,16 +83,16 @@ bool coplanar_overlap(const Point<T>& n, const Corners<T>& a, const Corners<T>& 
   return !separated_by_edge(first, second) && !separated_by_edge(second, first);
 }
 
-/// Returns signed distances of points from the plane of triangle `of` with normal n, times |n|.
+/// Returns signed distances of points from the plane of `of`, times |n|. n: normal of the plane.
 template <class T>
 std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corners<T>& points) {
   const T d = -dot(n, of[0]);
   return {dot(n, points[0]) + d, dot(n, points[1]) + d, dot(n, points[2]) + d};
 }
 
-/// Returns the part of a line that lies in a triangle. The line is where the triangle's plane meets
-/// the other triangle's plane. p: coordinates of the corners along the line. d: signed distances of
-/// the corners from the other plane. Precondition: d has neither one strict sign nor only zeros.
+/// Returns the interval in which a triangle meets the line common to its plane and another plane.
+/// p: coordinates of the corners along the line. d: signed distances of the corners from the other
+/// plane. Precondition: d has a zero or both signs, and d is not (0, 0, 0).
 template <class T>
 std::array<T, 2> interval(const std::array<T, 3>& p, const std::array<T, 3>& d) {
   // Finds the corner that is alone on its side of the other plane.
@@ -138,7 +138,7 @@ bool moeller(const SuitePair& pair, T epsilon) {
   const std::array<T, 3> da = snapped(distances(n2, b, a));
   if (one_strict_sign(da)) return false;
   if (all_zero(da) || all_zero(db)) return coplanar_overlap(n1, a, b);
-  // Projects the common line of the two planes on the axis that is closest to its direction.
+  // Projects the common line of the two planes on the coordinate axis nearest to its direction.
   const int axis = longest_axis(cross(n1, n2));
   const std::array<T, 2> first = interval<T>({a[0][axis], a[1][axis], a[2][axis]}, da);
   const std::array<T, 2> second = interval<T>({b[0][axis], b[1][axis], b[2][axis]}, db);
@@ -173,7 +173,7 @@ Alone alone_of(const std::array<T, 3>& s) {
   return {};
 }
 
-/// Returns the triangle with this corner first, in the same orientation.
+/// Returns the triangle with this corner first. The orientation stays the same.
 template <class T>
 Corners<T> begun_at(const Corners<T>& t, int corner) {
   return {t[corner], t[(corner + 1) % 3], t[(corner + 2) % 3]};

@@ -25,7 +25,7 @@ bool intersection_filter(const SuitePair& pair) {
   auto a = pair.a, b = pair.b;
   int coplanar = 0;
   double from[3], to[3], surfaces[2];
-  constexpr double kTolerance = 1e-6;  // the filter's own default
+  constexpr double kTolerance = 1e-6;  // default of vtkIntersectionPolyDataFilter
   return vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(
              a[0].data(), a[1].data(), a[2].data(), b[0].data(), b[1].data(), b[2].data(), coplanar,
              from, to, surfaces, kTolerance) != 0;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
-/// The fields of a line, separated by tabs: its number, the question, and the data.
+/// The fields of a line, which tabs separate: line number, question, data.
 using Fields = std::vector<std::string>;
 
 struct NoQuestion : std::runtime_error {
@@ -71,7 +71,7 @@ Scene read_scene(const Fields& fields, std::size_t first, std::size_t end, bool 
   return out;
 }
 
-/// Writes the text at once, so that it is not lost if the next question ends the program.
+/// Writes the text without a buffer, so that it is not lost if the next question ends the program.
 void write_answer(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(to, text.data() + done, text.size() - done);
@@ -84,7 +84,7 @@ std::string nanoseconds(const Stopwatch& since) {
   return std::to_string(std::llround(1e6 * since.ms()));
 }
 
-/// Returns the answer to a question of yes or no, and the time that the answer took.
+/// Returns the answer to a yes-or-no question, with the time that the answer took.
 template <class Ask>
 std::string verdict(const std::string& begin, const Ask& ask) {
   const Stopwatch watch;
@@ -142,7 +142,7 @@ bool has(const Contestant& contestant) {
   return static_cast<bool>(contestant.*member);
 }
 
-/// A kind of question: its word, whether a contestant answers it, and the answer.
+/// A kind of question. known(): true if the contestant can answer questions of this kind.
 struct Question {
   const char* word;
   bool (*known)(const Contestant&);

@@ -1,5 +1,5 @@
 // Embree as a broad phase: rtcCollide() searches hierarchies of user geometries. The boxes of the
-// geometries are in float, and are rounded outward.
+// geometries are in float and are rounded outward.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ void require_no_error(RTCDevice device) {
   throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
 }
 
-/// Returns why Embree cannot take the scene; empty if Embree can. Embree silently leaves out
+/// Returns why Embree cannot process the scene, or "" if it can. Embree silently leaves out
 /// geometry with a coordinate of 1.844e18 or more.
 std::string refuses_large(const Scene& scene) {
   for (const Vec3& p : scene.vertices) {
@@ -79,7 +79,7 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
 }
 
-/// A device with two hierarchies. Each run builds the hierarchies again, in the same memory.
+/// An Embree device with two hierarchies. Each run rebuilds the hierarchies in the same memory.
 class Embree {
  public:
   Embree(RTCBuildQuality quality, unsigned threads)
@@ -128,8 +128,8 @@ struct Found {
   std::uint32_t second;  // primitive i of the second hierarchy is triangle second + i
 };
 
-/// Adds candidates. Embree calls this function in any of its threads, with all pairs of two leaves
-/// that meet. For a hierarchy against itself, Embree gives every pair as (a, b) and as (b, a).
+/// Adds candidates. Embree calls this function from any of its threads, with pairs of overlapping
+/// leaves. For a hierarchy against itself, Embree gives every pair as (a, b) and as (b, a).
 void collect(void* data, RTCCollision* collisions, unsigned count) {
   const Found& found = *static_cast<const Found*>(data);
   PeerCandidates::Part& part = found.candidates.part();

@@ -1,7 +1,7 @@
 // FCL, in four ways.
 // - broad: FCL's hierarchies, followed by exact decisions.
 // - narrow: FCL as its users run it, with FCL's own test of two triangles, which rounds.
-// - poses: FCL as in narrow, with hierarchies that are kept while objects move.
+// - poses: the same as narrow, but the hierarchies are kept while objects move.
 // - distances: FCL's distances between objects.
 // The compiled library has FCL's templates only in double. The templates in float are instantiated
 // here.
@@ -32,7 +32,7 @@ namespace {
 constexpr const char* kLibrary = "FCL " FCL_VERSION;
 
 /// The hierarchy of one object, with the interface for search_trees(). Primitive i is triangle
-/// first + i. As in FCL, the larger of two nodes is divided first.
+/// first + i. size() makes search_trees() divide the larger of two nodes first, as FCL does.
 template <class Volume>
 struct Model {
   std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
@@ -50,9 +50,9 @@ struct Model {
   }
 };
 
-/// Builds the hierarchy of an object. Each coordinate is rounded to the nearest value of the
-/// volume's scalar type. Precondition: the object has triangles. Throws Error if FCL builds
-/// nothing.
+/// Builds the hierarchy of an object. Rounds each coordinate to the nearest value of the volume's
+/// scalar type. Precondition: the object has triangles. Throws Error if FCL cannot build the
+/// hierarchy.
 template <class Volume>
 Model<Volume> model_of(const Scene& scene, const Object& object) {
   const auto triangles =
@@ -78,7 +78,7 @@ Model<Volume> model_of(const Scene& scene, const Object& object) {
 
 using IndexPair = std::pair<std::size_t, std::size_t>;
 
-/// The objects of a scene that have triangles, and FCL's broad phase over them.
+/// The objects of a scene that have triangles, with FCL's broad phase for these objects.
 template <class Volume>
 struct Objects {
   using Scalar = typename Volume::S;
@@ -101,7 +101,7 @@ struct Objects {
     for (const auto& object : placed) manager.registerObject(object.get());
     manager.setup();
   }
-  /// Returns the pairs of objects whose boxes meet.
+  /// Returns the pairs of objects whose boxes overlap.
   std::vector<IndexPair> meeting() const {
     if (placed.size() < 2) return {};
     Manager manager;
@@ -117,7 +117,7 @@ struct Objects {
     return pairs;
   }
 
-  std::vector<std::uint32_t> numbers;  // numbers of the objects in the scene
+  std::vector<std::uint32_t> numbers;  // numbers of these objects in the scene
   std::vector<Model<Volume>> models;
   std::vector<std::unique_ptr<Placed>> placed;
 };
@@ -154,9 +154,9 @@ void initialize(Node& node, const Objects<Volume>& objects, std::size_t a, std::
   }
 }
 
-/// Adds the pairs of triangles that fcl::collide() finds between two objects. Calls the inner
-/// function that fcl::collide() would call. Calling fcl::collide() in float would compile code for
-/// all kinds of shapes, since Debian's library has none of this code in float.
+/// Adds the pairs of triangles that FCL finds between two objects. Calls the inner function that
+/// fcl::collide() would call. Debian's library has no code for float, so a call of fcl::collide()
+/// in float would compile code for all kinds of shapes.
 template <class Scalar>
 void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
                  std::vector<TrianglePair>& pairs) {
@@ -174,7 +174,7 @@ void collide_two(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std
   }
 }
 
-/// Returns all pairs that the tasks found, sorted. In each pair the lower number is first.
+/// Returns all pairs that the tasks found, sorted. In each pair the lower index is first.
 std::vector<TrianglePair> sorted(const std::vector<std::vector<TrianglePair>>& found) {
   std::vector<TrianglePair> out;
   for (const std::vector<TrianglePair>& some : found) {
@@ -185,7 +185,7 @@ std::vector<TrianglePair> sorted(const std::vector<std::vector<TrianglePair>>& f
   return out;
 }
 
-/// Finds pairs by FCL's own broad phase, hierarchies and test of two triangles.
+/// Finds pairs by FCL's own broad phase, hierarchies and triangle test.
 template <class Scalar>
 BenchAnswer collide(const Scene& scene, unsigned threads) {
   const Stopwatch building;
@@ -214,7 +214,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   return answer;
 }
 
-/// Builds the hierarchies and the broad phase. Returns a function that keeps both, and moves the
+/// Builds the hierarchies and the broad phase. Returns a function that keeps both and moves the
 /// objects in each call.
 PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   using All = Objects<fcl::OBBRSS<double>>;
@@ -244,7 +244,7 @@ PoseRun set_up_poses(const Scene& scene, unsigned threads) {
   };
 }
 
-/// Returns FCL's distance of two objects; infinity if the distance is not below `most`. Calls an
+/// Returns FCL's distance of two objects, or infinity if the distance is not below `most`. Calls an
 /// inner function of FCL, for the same reason as collide_two().
 template <class Scalar>
 Scalar distance_of(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, std::size_t b,
@@ -256,11 +256,11 @@ Scalar distance_of(const Objects<fcl::OBBRSS<Scalar>>& objects, std::size_t a, s
   fcl::detail::distance(&node);
   if (result.b1 == fcl::DistanceResult<Scalar>::NONE)
     return std::numeric_limits<Scalar>::infinity();
-  return std::max(result.min_distance, Scalar(0));  // a negative value: the models meet
+  return std::max(result.min_distance, Scalar(0));  // negative if the models intersect
 }
 
-/// Returns FCL's limit for distances up to `within`. FCL finds only distances below the limit, so
-/// the limit is larger than `within`.
+/// Returns a limit for FCL that includes distances up to `within`. FCL finds only distances below
+/// the limit, so the limit is the next larger value.
 template <class Scalar>
 Scalar most_of(double within) {
   constexpr auto kMost = std::numeric_limits<Scalar>::max();
@@ -276,8 +276,8 @@ struct Search {
   std::size_t of, nearest;
   Scalar least;
 
-  /// FCL calls this with the object of the search and another object. Returning true ends the
-  /// search.
+  /// FCL calls this function with the object of the search and another object. If the function
+  /// returned true, the search would end.
   static bool visit(typename Of::Placed* a, typename Of::Placed* b, void* data, Scalar& least) {
     auto& search = *static_cast<Search*>(data);
     const std::size_t i = Of::index_of(a), k = Of::index_of(b);
@@ -331,7 +331,7 @@ PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsign
   return answer;
 }
 
-/// Returns why FCL cannot take the scene; empty if FCL can.
+/// Returns why FCL cannot process the scene, or "" if FCL can.
 std::string refuses(const Scene& scene) {
   return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
 }

@@ -1,12 +1,11 @@
-// ODE as its users run it: sweep and prune, trees (OPCODE, in float), and contacts of two
-// triangles. All of these round. ODE's public interface gives no candidates, so no exact test can
-// follow.
+// ODE as its users run it: sweep and prune, trees (OPCODE, in float), and contacts of triangles.
+// All three round. ODE's public interface does not return candidates, so exact tests cannot follow.
 //
-// ODE reports contacts, and each contact has two triangles. Contacts that are within 1e-4 units are
-// merged. If the two contacts have equal depth, ODE calls a callback, and the callback here records
-// the pairs of the two contacts. Else ODE keeps only the deeper contact. ODE reports at most 65,535
-// contacts of two objects, and no contact of an object with itself. All pairs lost in this way
-// count as missed.
+// ODE reports contacts. Each contact has two triangles. ODE merges two contacts that are within
+// 1e-4 units of each other. If their depths are equal, ODE calls a callback, which here records the
+// triangle pairs of both contacts. Else ODE keeps only the deeper contact. ODE reports at most
+// 65,535 contacts of two objects, and no contact of an object with itself. All pairs that are lost
+// in this way count as missed.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ constexpr int kMostContacts = 65535;  // the largest number that dCollide() acce
   throw Error(kLibrary, text, "leave it out");
 }
 
-/// Starts ODE once. A failed assertion of ODE becomes an Error. Messages of ODE are not printed.
+/// Starts ODE once. A failed assertion of ODE throws Error. Messages of ODE are not printed.
 void start_ode() {
   static const bool started = [] {
     dSetErrorHandler(refuse);
@@ -44,9 +43,9 @@ void start_ode() {
   }
 }
 
-/// The merged contacts of two objects. For each merge, ODE calls note_merged() for the first object
-/// and then for the second object. A call names two triangles of the object: the triangle in the
-/// contact that ODE keeps (`had`), and the triangle in the contact that is dropped (`merged`).
+/// Merged contacts of two objects. For each merge, ODE calls note_merged() for the first object and
+/// then for the second object. Each call names two triangles of the object: `had` is in the contact
+/// that ODE keeps, and `merged` is in the contact that ODE drops.
 struct Merged {
   dGeomID first = nullptr;
   int had = 0;
@@ -54,7 +53,7 @@ struct Merged {
   std::vector<std::pair<int, int>> pairs;  // a triangle of the first object and one of the second
 };
 
-/// An object in ODE, with a tree. ODE keeps pointers to the scene's vertices and to faces_.
+/// An object with its tree in ODE. ODE keeps pointers to the scene's vertices and to faces_.
 class Model {
  public:
   Model(const Scene& scene, const Object& object, Merged& merged)
@@ -106,7 +105,7 @@ class Model {
   dGeomID geom_;
 };
 
-/// Returns the pairs of objects whose boxes meet, by ODE's sweep and prune.
+/// Returns the pairs of objects whose boxes overlap, by ODE's sweep and prune.
 std::vector<std::pair<const Model*, const Model*>> meeting(
     const std::vector<std::unique_ptr<Model>>& models) {
   std::vector<std::pair<const Model*, const Model*>> pairs;
@@ -136,7 +135,7 @@ void add_pairs(const Model& a, const Model& b, Merged& merged, std::vector<dCont
   }
 }
 
-/// ODE's collider has one state for all threads, so it runs on one thread.
+/// Ignores the number of threads: ODE's collider has global state, so it runs on one thread.
 BenchAnswer collide(const Scene& scene, unsigned) {
   start_ode();
   BenchAnswer answer;

@@ -1,5 +1,5 @@
-// The lists of peers, in the order of tables. For a peer that this build does not have, the entry
-// says why it is missing.
+// The lists of peers, in the order of the tables. For a peer that this build does not have, the
+// entry says why the peer is missing.
 #include "experiments/peers/peer.h"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ std::string why_missing(const Known& known) {
   return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
 }
 
-/// Returns the peers of a list. part: the member of LibraryPeers that has the peers of this kind.
+/// Returns the peers of a list. part: the member of LibraryPeers with the peers of this kind.
 template <class PeerKind>
 std::vector<PeerKind> listed(std::span<const Known> list,
                              std::vector<PeerKind> LibraryPeers::*part) {

@@ -1,5 +1,5 @@
-// Peers are other libraries that a user could take instead of farcull. `farcull bench` and the
-// studies compare farcull with peers in one process. Each library has a file that adapts it.
+// Peers are other libraries that a user could use instead of farcull. `farcull bench` and the
+// studies compare farcull with peers in one process. One source file adapts each library.
 #pragma once
 
 #include <array>
@@ -21,28 +21,28 @@
 namespace farcull {
 
 struct BenchAnswer {
-  double build_ms = 0;                   // building a hierarchy; 0 without a hierarchy
-  double candidates_ms = 0;              // finding the candidates
-  double exact_ms = 0;                   // deciding the candidates; a mean over the threads
+  double build_ms = 0;                   // time to build hierarchies; 0 without a hierarchy
+  double candidates_ms = 0;              // time to find the candidates
+  double exact_ms = 0;                   // time to decide the candidates, mean over the threads
   std::uint64_t candidate_pairs = 0;     // number of candidates
-  std::vector<TrianglePair> pairs = {};  // sorted, each once
+  std::vector<TrianglePair> pairs = {};  // sorted, without duplicates
 };
 
-/// Computes the pairs of triangles of a scene. Throws Error if the pairs cannot be guaranteed.
+/// Computes the colliding pairs of triangles of a scene. Throws Error if a pair might be missed.
 using BenchRun = std::function<BenchAnswer(const Scene&)>;
 
 /// A library that finds all colliding pairs of triangles, except neighbours (verify/exact.h). The
-/// triangles are in different objects, or in one object marked `self`.
+/// two triangles are in different objects, or in one object marked `self`.
 struct Peer {
   std::string name;     // as in --peers
   std::string library;  // with its version, such as "CGAL 5.5.1"
   std::string missing;  // why the peer cannot run in this build; empty: it can run
-  std::function<BenchRun(unsigned threads)> set_up = {};  // makes devices and thread pools
-  std::function<std::string(const Scene&)> refuses = {};  // why the peer cannot take the scene; may
-                                                          // return ""; null: takes all scenes
+  std::function<BenchRun(unsigned threads)> set_up = {};  // creates devices and thread pools
+  std::function<std::string(const Scene&)> refuses = {};  // why the peer cannot process the scene;
+                                                          // "": it can; null: processes all scenes
 };
 
-/// objects: every two objects with triangles. nearest: each object and its nearest other object.
+/// objects: each pair of objects with triangles. nearest: each object and its nearest other object.
 enum class DistanceTask : std::uint8_t { objects, nearest };
 
 struct PeerQuestion {
@@ -50,7 +50,7 @@ struct PeerQuestion {
   double within = std::numeric_limits<double>::infinity();  // largest distance, in world units
 };
 
-/// A distance of two objects. With `objects` a < b; with `nearest` b is the object nearest to a.
+/// A distance of two objects. Task `objects`: a < b. Task `nearest`: b is the object nearest to a.
 struct PeerDistance {
   std::uint32_t a = 0, b = 0;
   double distance = 0;  // from the library; 0 if the library says that the objects meet
@@ -58,18 +58,17 @@ struct PeerDistance {
 };
 
 struct PeerDistances {
-  double build_ms = 0;                       // building hierarchies
-  double query_ms = 0;                       // everything after building
+  double build_ms = 0;                       // time to build hierarchies
+  double query_ms = 0;                       // time of everything after building
   std::vector<PeerDistance> distances = {};  // sorted by a, then b
 };
 
 /// A library that computes distances between the objects of a scene. All libraries round;
 /// `farcull bench --distances` measures the errors. The pairs of objects are divided over the
-/// threads. The distance of one pair is computed on one thread. Members without a comment are as in
-/// Peer.
+/// threads. One thread computes the distance of a pair. Other members are as in Peer.
 struct DistancePeer {
   std::string name, library, missing = {};
-  bool comparable = true;  // false: the library answers in floats, so its time is not comparable
+  bool comparable = true;  // false: the library computes in float, so times are not comparable
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};
 };
@@ -81,26 +80,26 @@ using PoseRun = std::function<std::vector<TrianglePair>(std::span<const RigidMot
 /// --poses). The library rounds, like narrow_peers(). Members without a comment are as in Peer.
 struct PosePeer {
   std::string name, library = {}, missing = {};
-  std::function<PoseRun(const Scene&, unsigned threads)> set_up = {};  // makes the models
+  std::function<PoseRun(const Scene&, unsigned threads)> set_up = {};  // creates the models
   std::function<std::string(const Scene&)> refuses = {};
 };
 
-/// Returns why a peer cannot take the scene; empty if the peer can.
+/// Returns why a peer cannot process the scene, or "" if it can.
 template <class AnyPeer>
 std::string why_left_out(const AnyPeer& peer, const Scene& scene) {
   return peer.missing.empty() && peer.refuses ? peer.refuses(scene) : peer.missing;
 }
 
-/// Returns broad phases of libraries. Each is followed by the exact decisions of verify/exact.h,
-/// and runs at its best settings. All work that can be divided runs on the threads of the bench.
-/// Candidates are decided in parts of limited size, to save memory. This function and the next
-/// three also return peers that this build does not have.
+/// Returns broad phases of libraries, each at its best settings. The predicates of verify/exact.h
+/// decide the candidates of each broad phase, in parts of limited size to save memory. Work that
+/// can be divided runs on several threads. This function and the next three also return peers that
+/// this build does not have.
 std::vector<Peer> all_peers();
 
-/// Returns libraries as their users run them, with their own inexact test of two triangles. So
-/// pairs may be missed or falsely reported. fcl-float and fcl-double use FCL's OBBRSS hierarchies
-/// and fcl::collide() on coordinates rounded to float or double. ode-trimesh uses the contacts of
-/// ODE's dCollide(). BenchAnswer::pairs has the pairs that the library reports, without neighbours
+/// Returns libraries as their users run them, with their own inexact triangle tests. So pairs may
+/// be missed or falsely reported. fcl-float and fcl-double use FCL's OBBRSS hierarchies and
+/// fcl::collide() on coordinates rounded to float or double. ode-trimesh uses the contacts of ODE's
+/// dCollide(). BenchAnswer::pairs has the pairs that the library reports, without neighbours
 /// (verify/exact.h). candidate_pairs is the number of these pairs. FCL's pairs of objects are
 /// divided over the threads.
 std::vector<Peer> narrow_peers();
@@ -112,11 +111,11 @@ std::vector<Peer> narrow_peers();
 ///   squared_distance() of two triangles in doubles.
 std::vector<DistancePeer> distance_peers();
 
-/// Returns one peer: fcl-double, as in narrow_peers(), but its hierarchies and its broad phase are
-/// kept from call to call.
+/// Returns one peer: fcl-double as in narrow_peers(), except that its hierarchies and its broad
+/// phase are kept between calls.
 std::vector<PosePeer> pose_peers();
 
-/// The peers that the adapter of one library adds to the lists above.
+/// The peers of one library, as its adapter provides them for the lists above.
 struct LibraryPeers {
   std::vector<Peer> broad = {}, narrow = {};
   std::vector<DistancePeer> distances = {};
@@ -128,7 +127,7 @@ LibraryPeers bullet_library();
 LibraryPeers ode_library();
 PosePeer fcl_poses();
 
-// Functions and classes for the files that adapt a library.
+// Functions and classes for the source files that adapt libraries.
 
 /// Returns a peer that needs no setup. Each run calls run(scene, threads).
 Peer plain_peer(const std::string& name, const std::string& library,
@@ -141,8 +140,8 @@ std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
 /// Returns `reason` if the scene has degenerate triangles, else "".
 std::string refuse_degenerate(const Scene& scene, const char* reason);
 
-/// Data that a peer prepares from a scene: the boxes of the triangles, and which pairs of triangles
-/// are tested. The time for the preparation counts as time of the peer.
+/// Data that a peer computes from a scene: the boxes of the triangles, and which pairs of triangles
+/// are tested. The time for this computation counts as time of the peer.
 struct PeerScene {
   /// with_boxes: false for a peer that makes its own boxes.
   explicit PeerScene(const Scene& scene, bool with_boxes = true);
@@ -163,12 +162,12 @@ struct PeerScene {
   bool has_pairs() const;
 };
 
-/// Takes candidates from one or several threads. Decides a part of the candidates when the part is
-/// full, and the remaining candidates at the end on all threads.
+/// Collects candidates from one or several threads. Decides a part of the candidates when the part
+/// is full. finish() decides the remaining candidates on all threads.
 class PeerCandidates {
  public:
-  /// parallel: candidates come from several threads, and each thread decides its own full parts.
-  /// Else candidates come from one thread, and full parts are decided on all threads.
+  /// parallel: true if candidates come from several threads. Each thread then decides its own full
+  /// parts. If false, candidates come from one thread, and full parts are decided on all threads.
   PeerCandidates(const Scene& scene, unsigned threads, bool parallel);
   ~PeerCandidates();
 
@@ -201,7 +200,7 @@ class PeerCandidates {
   const Scene& scene_;
   const unsigned threads_;
   const bool parallel_;
-  const std::uint64_t id_;  // different for every collector of a process
+  const std::uint64_t id_;  // different for every PeerCandidates of a process
   const Stopwatch since_;
   std::mutex mutex_;  // protects parts_
   std::vector<std::unique_ptr<Part>> parts_;
@@ -211,15 +210,16 @@ class PeerCandidates {
 /// below node `b` of tree `second`. For libraries whose own traversal has only one thread.
 ///
 /// A node is an int, and the root is 0. A Tree has the functions is_leaf(node), left(node),
-/// right(node), triangle(leaf), size(node), and meets(node, other, node of other). size() only
-/// serves to compare two nodes. meets() is true if triangles of the two nodes could meet.
+/// right(node), triangle(leaf), size(node), and meets(node, other tree, node of the other tree). Of
+/// two nodes, the node with the larger size() is divided. meets() is true if triangles of the two
+/// nodes could intersect.
 template <class Tree>
 struct TreeTask {
   const Tree* first;
   const Tree* second;
   int a = 0;
   int b = 0;
-  bool inner = false;  // compare the leaves below a with each other; then first == second, a == b
+  bool inner = false;  // true: compares the leaves below a with each other; first == second, a == b
 };
 
 /// Does one step of a search. If the volumes of the two nodes are disjoint, does nothing. If the
@@ -257,12 +257,12 @@ void descend(const TreeTask<Tree>& task, const Found& found) {
   step(task, found, [&found](const TreeTask<Tree>& next) { descend(next, found); });
 }
 
-/// Gives the candidates of all tasks to `candidates`. If first == second, leaves out triangles that
-/// share a vertex index. Precondition: `candidates` is parallel iff threads > 1.
+/// Adds the candidates of all tasks to `candidates`. If first == second, leaves out triangles that
+/// share a vertex index. Precondition: `candidates` was made with parallel == (threads > 1).
 template <class Tree>
 void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigned threads,
                   PeerCandidates& candidates) {
-  // Divides tasks until there are enough for all threads.
+  // Divides tasks until there are enough tasks for all threads.
   const std::size_t enough = threads > 1 ? 64 * threads : 1;
   const auto add = [&](const TreeTask<Tree>& task) {
     return [&scene, &part = candidates.part(), self = task.first == task.second](std::uint32_t a,
@@ -280,7 +280,7 @@ void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigne
 }
 
 /// Returns the finite distances of all pairs of objects, sorted. Divides the work over the threads.
-/// numbers: the objects, ascending. distance(i, k): the distance of numbers[i] and numbers[k].
+/// numbers: the objects' numbers, ascending. distance(i, k): distance of numbers[i] and numbers[k].
 std::vector<PeerDistance> distances_of_pairs(
     const std::vector<std::uint32_t>& numbers, unsigned threads,
     const std::function<double(std::size_t i, std::size_t k)>& distance);

@@ -1,5 +1,5 @@
-// Makes HTML pages that show a scene in a browser. A page contains the files of web/, a JSON text,
-// and blocks of packed numbers (packed_numbers()). The JSON text refers to the blocks by name.
+// Makes HTML pages that show a scene in a browser. A page contains the files of web/, JSON data and
+// blocks of packed numbers (packed_numbers()). The JSON data refers to the blocks by name.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@
 #if FARCULL_WITH_THREE
 
 // Embeds the bytes of the file `path` between the symbols farcull_NAME and farcull_NAME_end. Uses
-// the assembler, since a compiler would take minutes for an array of these bytes.
+// the assembler, since a compiler would need minutes for an array of these bytes.
 #define FARCULL_EMBED(name, path)          \
   asm(".pushsection .rodata\n"             \
       "farcull_" #name ": .incbin \"" path \
@@ -50,7 +50,7 @@ namespace {
 
 using nlohmann::json;
 
-// The files of three.js, a library for WebGL in browsers (Debian's libjs-three), as embedded in the
+// The files of three.js, a WebGL library for browsers (Debian's libjs-three), as embedded in the
 // program. All members are empty if the program was built without three.js.
 struct ThreeJs {
   std::string_view library;   // three.min.js
@@ -100,7 +100,7 @@ void require_size(const Scene& scene) {
     throw too_large("objects", scene.objects.size(), kMostPageObjects);
 }
 
-// The data blocks of a page. Each block is a script element that browsers do not run.
+// Data blocks of a page. Each block is a script element of type text/plain, which is not executed.
 struct PageBlocks {
   // Adds a block and returns its name.
   std::string add(const std::string& block) {
@@ -121,7 +121,7 @@ json page_box(const Box& box) {
           {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))}};
 }
 
-// Returns the vertices (rounded by quantized()), the triangles and the objects as JSON.
+// Returns vertices (rounded by quantized()), triangles and objects as JSON. Adds blocks for arrays.
 json frame_of(const Scene& scene, const Box& box, PageBlocks& blocks) {
   json objects = json::array();
   for (const Object& object : scene.objects)
@@ -143,7 +143,7 @@ void put(std::string& page, const std::string& mark, std::string_view text) {
   page.replace(at, mark.size(), text);
 }
 
-// Returns a page: web/frame.html, filled with the title, the body, the style, the blocks, three.js,
+// Returns a page. Fills web/frame.html with the title, the body, the style, the blocks, three.js,
 // page_view.js, the script and the data.
 std::string framed_page(std::string_view title, std::string_view body, const PageBlocks& blocks,
                         const json& about, std::string_view script) {
@@ -178,7 +178,7 @@ class PageMaker {
       a.push_back(pair.a);
       b.push_back(pair.b);
     }
-    // One byte per pair: the kind of contact, as an index into `contacts` of finish().
+    // One byte per pair: the kind of contact, as an index into the JSON array `contacts`.
     std::string contacts;
     for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
     frame_["a"] = blocks_.add(packed_numbers(a));
@@ -224,12 +224,12 @@ class PageMaker {
   }
 
  private:
-  // Returns the direction that points upward on the screen while the reader turns the scene.
+  // Returns the direction that stays upward on the screen while the reader rotates the scene.
   Vec3 world_up() const {
     const View view = camera(arguments_.picture);
     const std::string& up = arguments_.picture.up;
     const Vec3 given = parse_view(up.empty() ? "y" : up).rows.row(2);
-    // If `given` is parallel to the direction of sight, camera() has chosen another up direction.
+    // If `given` is parallel to the viewing direction, camera() has chosen another up direction.
     return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
   }
 
@@ -267,9 +267,9 @@ class PageMaker {
   std::vector<PanelResult> results_;
 };
 
-// Returns the JSON data of a row. Appends the end points of the row's segments to `segments`.
+// Returns the JSON data of a row. Appends the end points of the row's line segments to `segments`.
 json row_of(const Scene& scene, const ClashRow& row, const Box& box, std::vector<Vec3>& segments) {
-  // If the parts do not intersect, adds the segment between two nearest points.
+  // If the parts do not intersect, adds the segment between two nearest points of the parts.
   std::vector<std::array<Vec3, 2>> lines = row.segments;
   if (row.squared && !row.inner) lines.push_back(row.witness);
   const std::size_t first = segments.size();
@@ -323,7 +323,7 @@ std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& bo
   std::vector<std::uint32_t> out;
   out.reserve(3 * points.size());
   for (int axis = 0; axis < 3; ++axis) {
-    // Halves all values, since the extent of the box may be too large for a double.
+    // Halves all values, since the extent of the box may exceed the largest double.
     const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
     for (const Vec3& p : points) {
       const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;

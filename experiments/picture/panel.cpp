@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 constexpr Rgba kGood = {0, 98, 84};
-// A disc of diameter 2 sqrt(2) px, wherever its centre lies, contains a complete pixel. This pixel
-// gets the unblended colour. Reason: some pixel's centre is at most half a pixel diagonal from the
-// disc's centre, and this pixel's corners are half a diagonal from the pixel's centre.
+// A disc of diameter 2 sqrt(2) px contains a complete pixel, wherever its centre lies. Proof: the
+// nearest pixel centre is at most half a pixel diagonal away. The corners of this pixel are another
+// half diagonal away. A complete pixel has the unblended colour.
 constexpr double kWholePixel = 2.83;
 
 // Groups missed triangles that are close together in the picture.
@@ -41,7 +41,7 @@ class Clusters2d {
     }
   };
 
-  // Removes and returns the groups. Cells that share an edge or a corner are in the same group.
+  // Removes and returns the groups. Adjacent cells, also diagonally, are in the same group.
   std::vector<Group> take_groups() {
     std::vector<Group> out;
     while (!cells_.empty()) {
@@ -87,7 +87,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   if (missed.empty()) return 0;
   const double line = line_of(window);
   std::vector<PictureTriangle> over;
-  // Missed triangles that are farther apart than the width of a ring get separate rings.
+  // Side of the square cells that group missed triangles, px. Each small group gets a ring.
   const double ring = 11 * line;
   Clusters2d clusters(ring);
   for (const std::uint32_t t : missed) {

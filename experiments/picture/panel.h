@@ -15,14 +15,14 @@ struct PictureArguments {
   SceneArguments scene;
   bool self = false;          // also tests every object against itself
   std::optional<long> frame;  // frame number of a moving scene; empty: the scene does not move
-  // The frames of the motion. If empty: 30 frames, or only `frame` for numbered meshes.
+  // The frames of the motion. Default: 30 frames, or for numbered meshes only `frame`.
   std::optional<FrameRange> frames;
-  std::vector<RunOptions> panels;  // one for each panel; verify and device are ignored
-  std::string view;                // direction of sight, for parse_view(); "": obliquely down onto
+  std::vector<RunOptions> panels;  // one per panel; verify and device are not used
+  std::string view;                // viewing direction, for parse_view(); "": obliquely down onto
                                    // the side that faces +z
   std::string up;                  // upward direction in the picture: x, -x, ... z, -z; "": y
-  bool zoom = false;               // fits the picture to the colliding triangles alone
-  int width = 900, height = 760;   // size of a panel's picture in px, 64 to kMostPicture
+  bool zoom = false;               // true: shows only the region of the colliding triangles
+  int width = 900, height = 760;   // px, size of a panel's picture; 64 to kMostPicture
 };
 
 constexpr std::size_t kMostPanels = 6;
@@ -35,29 +35,29 @@ std::string command_of(const PictureArguments& arguments);
 void validate(const PictureArguments& arguments);
 
 /// Returns the view of the picture. Its axes right, up and backward are right-handed, so the image
-/// is not mirrored. Throws Error naming --up if arguments.up is the direction of sight.
+/// is not mirrored. Throws Error naming --up if arguments.up is parallel to the viewing direction.
 View camera(const PictureArguments& arguments);
 
 /// Returns the frames of the motion. Precondition: arguments.frame is not empty.
 FrameRange frames_of(const PictureArguments& arguments);
 
-// The functions below put panels side by side, with titles above and legends below, and write PNG.
-// Pango and cairo draw text in the font DejaVu Sans, without hinting. If the system lacks this
-// font, fontconfig chooses another font.
+// The functions below draw text, compose panels with titles and legends into a sheet, and write PNG
+// files. Pango and cairo draw text in the font DejaVu Sans, without hinting. If the system lacks
+// this font, fontconfig chooses another font.
 
 struct TextStyle {
-  double height = 14;  // px of a capital letter
+  double height = 14;  // height of a capital letter, px
   bool bold = false;
   Rgba colour = {30, 30, 34, 255};
 };
 
-/// Draws a text in UTF-8. The baseline begins at (x, baseline), in px from the left and top edges.
-/// An invalid byte is drawn as U+FFFD. Text beyond the edge of the image is cut. Text wider than
+/// Draws a UTF-8 text. The baseline begins at (x, baseline), in px from the left and top edges. An
+/// invalid byte is drawn as U+FFFD. Text beyond the edge of the image is cut. Text wider than
 /// `room` px is cut and ends with "…".
 void draw_text(Image& image, double x, double baseline, const std::string& text,
                const TextStyle& style, double room);
 
-/// Returns the font and the versions of the libraries: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
+/// Returns the names of font and libraries: "DejaVu Sans, pango 1.50.12, cairo 1.16.0".
 std::string lettering_version();
 
 struct LegendEntry {
@@ -72,18 +72,18 @@ struct SheetPanel {
   Rgba headline_colour;
   Image image;  // opaque; all panels have the same size
   std::vector<LegendEntry> legend;
-  int left = 0, top = 0;  // position of the image in the sheet of compose()
+  int left = 0, top = 0;  // position of the image in the sheet, px; set by compose()
 };
 
 /// Blends `above` over `below`, after multiplying the opacity of `above` by `opacity`.
-/// Precondition: `below` is opaque, and the two images have the same size.
+/// Preconditions: `below` is opaque, and the two images have the same size.
 void lay_over(Image& below, const Image& above, double opacity);
 
 /// Draws a circle with light outlines. (x, y): its centre, in px from the left and top edges.
 void draw_ring(Image& image, double x, double y, double radius, double line, const Rgba& colour);
 
 /// Returns a sheet with title and subtitle, the panels (at least one), and a line of small print.
-/// Cuts texts that are too long.
+/// Texts that are too long are cut.
 Image compose(const std::string& title, const std::string& subtitle,
               std::vector<SheetPanel>& panels, const std::string& small_print);
 
@@ -101,10 +101,9 @@ constexpr Rgba kMissedColour = {220, 0, 90};
 /// kFoundColour: colliding triangles. kIdleColour: triangles that a method kept although they do
 /// not collide.
 constexpr Rgba kFoundColour = {0, 128, 116}, kIdleColour = {240, 176, 32};
-constexpr double kIdlePart = 0.6;  // fraction of kIdleColour in its mix with the object's colour
-constexpr double kThrough = 0.28;  // opacity of colliding triangles that other triangles hide
-/// Colours of the objects, used in turn. They are pale, so that only collisions have strong
-/// colours.
+constexpr double kIdlePart = 0.6;  // weight of kIdleColour when mixed with the object's colour
+constexpr double kThrough = 0.28;  // opacity of colliding triangles drawn over triangles in front
+/// Colours of the objects, used in turn. All are pale, so that only collisions have strong colours.
 constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
                                                  {218, 214, 206},
                                                  {186, 203, 184},
@@ -118,15 +117,15 @@ constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
 struct PanelResult {
   std::string title;                             // "cullide at 128 px"
   std::string headline;                          // "missed 12 of 4,268 colliding pairs"
-  std::uint64_t colliding = 0;                   // colliding pairs, by the exact method
-  std::uint64_t neighbours = 0;                  // colliding pairs in an object that share a vertex
-  std::uint64_t missed = 0;                      // colliding pairs that the method did not find
-  std::uint64_t missed_triangles = 0;            // triangles in a missed pair
+  std::uint64_t colliding = 0;                   // number of colliding pairs, by the method `exact`
+  std::uint64_t neighbours = 0;                  // number of colliding pairs of neighbours
+  std::uint64_t missed = 0;                      // colliding pairs that the method missed
+  std::uint64_t missed_triangles = 0;            // triangles in at least one missed pair
   std::uint64_t kept = 0;                        // triangles that the method kept; 0 for `exact`
-  std::uint64_t idle = 0;                        // kept triangles that are in no collision
+  std::uint64_t idle = 0;                        // kept triangles that do not collide
   std::uint64_t rings = 0;                       // number of rings around small missed triangles
   bool drew = false;                             // the method rendered views
-  bool broken = false;                           // the method guarantees all pairs, but missed one
+  bool broken = false;                           // a method with a guarantee missed a pair
   std::string device;                            // name of the GL renderer used, "cpu", or "none"
   int left = 0, top = 0, width = 0, height = 0;  // place of the panel's picture in the image, px
 };
@@ -135,13 +134,13 @@ struct DrawnPanel {
   SheetPanel sheet;
   PanelResult result;
 };
-/// Returns the width of lines in px for a picture of this size.
+/// Returns the width of drawn lines, in px, for a picture of this size.
 double line_of(const Window& window);
 /// Returns an image of the triangles on a transparent background.
 Image painted(const GlContext& context, const Scene& scene, const Window& window,
               const std::vector<PictureTriangle>& triangles);
-/// Draws the missed triangles over the image. Draws rings around triangles that are too small to
-/// see, and returns the number of rings.
+/// Draws the missed triangles over the image. Draws rings around missed triangles that are too
+/// small to see, and returns the number of rings.
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
                           const std::vector<std::uint32_t>& missed, Image& image);
 /// Returns the method and its options without the resolution: "far, exact offset".
@@ -150,7 +149,7 @@ std::string method_title(const RunOptions& options);
 std::string panel_title(const RunOptions& options);
 /// Returns the headline: "missed 12 of 4,268 colliding pairs".
 std::string headline_of(const PanelResult& result);
-/// Sets the title and the headline over the panel, and the colour of the headline.
+/// Sets the panel's title, headline and colour of the headline.
 void set_heading(DrawnPanel& panel);
 /// Adds a line to the legend: a box of this colour, and the text.
 void explain(DrawnPanel& panel, Rgba colour, const std::string& text);

@@ -22,7 +22,7 @@ namespace {
 constexpr long kUsualFrames = 30;
 constexpr const char* kUsualView = "-0.45:-0.35:-0.82";
 
-// Runs `parse`. If it throws an Error, throws an Error that names `option` instead.
+// Runs `parse`. If `parse` throws an Error, throws the same Error about `option` instead.
 template <class Parse>
 void as_option(const std::string& option, Parse parse) {
   try {
@@ -34,12 +34,12 @@ void as_option(const std::string& option, Parse parse) {
 
 constexpr Rgba kPaper = {255, 255, 255};
 constexpr double kMargin = 0.04;     // margin around the scene, as a fraction of the picture's size
-constexpr double kZoomMargin = 0.1;  // margin around the colliding triangles, likewise a fraction
+constexpr double kZoomMargin = 0.1;  // the same for a picture of the colliding triangles only
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
-// Draws each triangle in the colour of its `kind`. Then draws the colliding triangles, `hit`,
-// see-through over the triangles that hide them.
+// Draws each triangle in the colour of its `kind`. Then draws the colliding triangles `hit`
+// translucently over triangles that hide them.
 Image scene_image(const Scene& scene, const Window& window, const std::vector<std::uint8_t>& kind,
                   const std::vector<std::uint32_t>& hit, const GlContext& context) {
   const double line = line_of(window);
@@ -258,7 +258,7 @@ void validate(const PictureArguments& arguments) {
 const Scene& open_scene(const PictureArguments& arguments, MeasurementContext& lab) {
   const std::vector<std::string> words = arguments.scene.words();
   if (words.size() == 1 && !arguments.self && !arguments.frame) return lab.scene(words.front());
-  // Joins the parts of the key by '\n', which no name of a scene contains.
+  // Joins the parts of the key by '\n', since no name of a scene contains '\n'.
   std::string key = arguments.self ? "self\n" : "\n";
   for (const std::string& word : words) key += word + "\n";
   if (arguments.frame) {
@@ -302,7 +302,7 @@ MethodAnswer answer_of(RunOptions options, const Scene& scene, MeasurementContex
   result.missed_triangles = answer.lost.size();
   result.kept = kept.size();
   result.idle = answer.idle.size();
-  // As in `farcull run`, guaranteed() depends on the options alone, not on tests of the device.
+  // As in `farcull run`, guaranteed() depends only on the options, not on probes of the device.
   result.broken = guaranteed(record.options) && !answer.missed.empty();
   const UsedDevice& device = record.found.device;
   result.device = device.gl ? device.gl->renderer : device.cpu ? "cpu" : "none";

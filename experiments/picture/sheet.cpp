@@ -1,4 +1,4 @@
-// Paints rectangles, rings and text into an image, and writes it as PNG.
+// Paints rectangles, rings and text into an image, and writes the image as PNG.
 #include <fmt/format.h>
 #include <pango/pangocairo.h>
 #include <zlib.h>
@@ -24,8 +24,8 @@ struct Free {
 template <class T>
 using Owned = std::unique_ptr<T, Free>;
 
-// Returns the layout of a text. Hinting is off, so that letters keep their shapes at every size and
-// place.
+// Returns the layout of a text. Hinting is off, so that letters have the same shapes at all sizes
+// and positions.
 Owned<PangoLayout> laid_out(const std::string& text, const TextStyle& style, double room) {
   constexpr double kCapital = 1493.0 / 2048;  // height of a capital letter in ems, for DejaVu
   const Owned<PangoContext> context(
@@ -75,8 +75,8 @@ void put(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(number >> shift));
 }
 
-// Returns a PNG chunk with a text, since cairo cannot write such chunks. An iTXt chunk has two
-// flags, a language and a translated keyword before the text. All of these are empty or 0 here.
+// Returns a PNG chunk with a text, since cairo cannot write text chunks. An iTXt chunk has two
+// flags, a language and a translated keyword before the text. All four are empty or 0 here.
 std::string chunk_of(const std::string& key, const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return (c & 0x80) == 0; });
   const std::string body =
@@ -169,7 +169,7 @@ Image compose(const std::string& title, const std::string& subtitle,
       strong{letter, true, kInk}, small{0.72 * letter, false, kGrey};
   const int count = static_cast<int>(panels.size());
   const int total_width = 2 * margin + count * width + (count - 1) * margin;
-  const int heading = 4 * line;  // title, subtitle and the space around them
+  const int heading = 4 * line;  // title and subtitle with margins
   const int top = heading + 2 * line + line / 2;
   const int legend_top = top + height + line / 2;
   const int total_height = legend_top + static_cast<int>(entries) * line + 2 * line;
@@ -223,7 +223,7 @@ std::string to_png(const Image& image, const PngTexts& texts) {
     throw Error("PNG", cairo_status_to_string(status), "give another size, or report the command");
   std::string chunks;
   for (const auto& [key, text] : texts) chunks += chunk_of(key, text);
-  constexpr std::size_t kHeader = 8 + 25;  // the signature and the chunk IHDR
+  constexpr std::size_t kHeader = 8 + 25;  // bytes of the PNG signature and of the chunk IHDR
   return out.insert(kHeader, chunks);
 }
 

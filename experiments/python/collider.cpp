@@ -30,7 +30,7 @@ py::dict report_of(const Report& report) {
                   "stages"_a = std::move(stages));
 }
 
-// Returns the array of kinds and the array of segments, each None if `asked` does not include it.
+// Returns an array of kinds and an array of segments. An array that is not `asked` for is None.
 std::pair<py::object, py::object> contact_arrays(const std::vector<Contact>& contacts,
                                                  Contacts asked) {
   if (asked == Contacts::none) return {py::none(), py::none()};
@@ -58,15 +58,15 @@ py::dict result_of(const Result& result, Contacts asked) {
                   "report"_a = report_of(result.report));
 }
 
-// Refuses an object made before a fork: the forked process lacks the object's threads.
+// Throws if a forked process uses an object of its parent, since only the parent has the threads.
 void require_process(pid_t maker, const char* made) {
   if (::getpid() == maker) return;
   raise(made, "was made by another process, which this one was forked from",
         "make one in each process", false);
 }
 
-// Holds a Collider or a DistanceFinder. Only the process that made a KeptFinder may use it, one
-// thread at a time.
+// Holds a Collider or a DistanceFinder. Only the process that made a KeptFinder may use it, and
+// only one thread at a time.
 template <class Finder, class Asked>
 class KeptFinder {
  public:
@@ -102,7 +102,7 @@ DistanceKind kind_of(const std::string& name) {
   raise("kind", "'" + name + "' is no choice", "give objects, nearest or all", true);
 }
 
-// The codes of features and of DistanceInside are indices into these arrays.
+// The codes of features, and the codes of DistanceInside, are indices into these two arrays.
 constexpr std::array kFeatures = {"vertex 0", "vertex 1", "vertex 2", "edge 0",
                                   "edge 1",   "edge 2",   "face"};
 constexpr std::array kInside = {"unknown", "none", "a", "b", "not closed"};
@@ -112,8 +112,8 @@ std::uint8_t feature_code(const std::string& feature) {
   return static_cast<std::uint8_t>((feature[0] == 'e' ? 3 : 0) + (feature.back() - '0'));
 }
 
-// Returns a column for each member of DistanceAnswer. Without `exact`, the column `squared` is
-// empty.
+// Returns one column for each member of DistanceAnswer. The column `squared` is empty if `exact` is
+// false.
 py::dict columns_of(const std::vector<DistanceAnswer>& answers, bool exact) {
   const auto count = static_cast<py::ssize_t>(answers.size());
   constexpr py::ssize_t kTwo = 2, kThree = 3;
@@ -174,7 +174,7 @@ void add_collider(py::module_& module) {
                       const py::array& starts, const py::array& poses) {
         return result_of(kept.find(vertices, triangles, starts, poses), kept.options.contacts);
       });
-  // A kind's code is its index in this tuple. Contact::Kind and ContactKind have the same codes.
+  // A kind's code is its index in this tuple. Contact::Kind and ContactKind have equal codes.
   static_assert(static_cast<int>(Contact::Kind::touch_face) + 1 == kContactKinds.size());
   module.attr("kinds") = tuple_of(kContactKinds, [](ContactKind kind) { return name_of(kind); });
 }

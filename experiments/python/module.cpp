@@ -1,5 +1,5 @@
-// The compiled module of the package farcull/, which checks arguments before it calls the module.
-// Messages name parameters, not options: depth_format, not "--depth-format".
+// The compiled module of the Python package farcull. The package checks arguments before it calls
+// the module. Messages name parameters such as depth_format, not options such as "--depth-format".
 #include "experiments/python/arrays.h"
 
 #include <cxxabi.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};  // time between checks for signals
 
-// Allocates and frees one large block. This raises the thresholds of the GNU C library, so that it
+// Allocates and frees one large block. This raises the thresholds of the GNU C library, which then
 // keeps more free memory. Otherwise each call requests the same pages again, which took half of the
 // time of small scenes. Thresholds that the environment or mallopt() has set are not changed.
 void keep_small_memory() {
@@ -37,8 +37,8 @@ void keep_small_memory() {
 #endif
 }
 
-// Lists a call while it runs. When the interpreter ends, end_all() stops all listed calls, since
-// the process then destroys objects that these calls use.
+// Registers a call while the call runs. When the interpreter ends, end_all() stops all registered
+// calls, since the process then destroys objects that these calls use.
 class Running {
  public:
   explicit Running(StoppableCall& call) : call_(call) {
@@ -71,7 +71,7 @@ class Running {
     bool ending = false;
     pid_t process = ::getpid();
   };
-  // Never destroyed, since threads of the interpreter may use it until the process ends.
+  // Never destroyed, since threads of the interpreter may use this object until the process ends.
   static All& all() {
     static All& made = *new All;
     return made;
@@ -82,7 +82,7 @@ class Running {
 
 // Returns whether the call has ended. Waits up to kLook without the lock of the interpreter. If the
 // interpreter shuts down meanwhile, PyEval_RestoreThread() unwinds this thread. The unwinding would
-// run destructors that touch Python, so the thread sleeps here until the process ends.
+// run destructors that use Python, so the thread sleeps here until the process ends.
 bool ended(StoppableCall& call) {
   PyThreadState* const state = PyEval_SaveThread();
   const bool ended = call.wait_for(kLook);
@@ -94,7 +94,7 @@ bool ended(StoppableCall& call) {
   return ended;
 }
 
-// Replaces each "--depth-format" in the text by depth_format.
+// Replaces options such as "--depth-format" in the text by parameters such as depth_format.
 std::string as_parameters(const std::string& text) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   std::string out;
@@ -110,7 +110,7 @@ std::string as_parameters(const std::string& text) {
   return out;
 }
 
-// True if an error of the library names a parameter of the caller.
+// True if `where`, the place of an Error, is a parameter of the Python package.
 bool is_parameter(std::string_view where) {
   constexpr std::array<std::string_view, 19> kNames = {
       "V",       "F",         "vertices",  "triangles", "object_starts", "self_objects",
@@ -173,15 +173,15 @@ std::span<const Number> numbers_of(const py::array& array) {
   return {static_cast<const Number*>(array.data()), static_cast<std::size_t>(array.size())};
 }
 
-// pybind11 and numpy keep state in global variables, which all interpreters of a process share.
-// If the first interpreter that uses pybind11 is not the main one, pybind11 waits forever.
+// pybind11 and numpy have global variables, which all interpreters of a process share. If the first
+// interpreter that uses pybind11 is not the main interpreter, pybind11 waits forever.
 constexpr const char* kNotMain =
     "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
     "process of its own";
 
 bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
 
-// Stops all running calls and waits for their end. Later calls are stopped as well. Called when the
+// Stops all running calls and waits for their end. Later calls stop at once. Called when the
 // interpreter ends, with the lock of the interpreter.
 void end_calls() {
   const py::gil_scoped_release released;
@@ -197,7 +197,7 @@ void fill(py::module_& module) {
   // std::bad_alloc to MemoryError.
   py::register_exception_translator(&translate);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-  spell_parameters(option_word);  // names in records; for exceptions see as_parameters()
+  spell_parameters(option_word);  // for names in records; exceptions use as_parameters()
   add_collider(module);
   add_distances(module);
   add_scenes(module);
@@ -271,7 +271,7 @@ MeshArrays::MeshArrays(const py::array& vertices, const py::array& triangles,
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles) {
-  // The caller has checked that these are whole numbers. Numbers from 2^63 on become negative.
+  // The caller has checked that these are whole numbers. Numbers of 2^63 or more become negative.
   const auto given =
       py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!given || given.ndim() != 2 || given.shape(1) != 2)
@@ -293,7 +293,7 @@ std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& na
 
 }  // namespace farcull::python
 
-// Does what PYBIND11_MODULE does, but first refuses every interpreter except the main one.
+// Same as PYBIND11_MODULE, except that every interpreter but the main interpreter is refused.
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull();
 extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull() {
   namespace python = farcull::python;

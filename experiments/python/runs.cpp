@@ -1,4 +1,4 @@
-// Scenes, moving scenes, and runs of any method, with their records, checks, pictures and clashes.
+// Python classes and functions for scenes, moving scenes, runs, records, checks and pictures.
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -94,7 +94,7 @@ class Frames {
   std::unique_ptr<FrameSource> source_;
 };
 
-// Merges vertices that are at most the tolerance apart. Returns the triangles of the merged mesh.
+// Merges vertices that are at most `tolerance` apart. Returns the triangles of the merged mesh.
 py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
                                   const py::array_t<std::int64_t>& triangles,
                                   const std::string& tolerance) {
@@ -118,8 +118,8 @@ py::array_t<std::uint32_t> welded(const py::array_t<double>& vertices,
   return out;
 }
 
-// Returns the pairs of objects that two patterns of names select. what: names the patterns in
-// errors.
+// Returns the pairs of objects whose names match the patterns `first` and `second`. what: name of
+// the patterns in errors.
 Ignored pairs_named(const KeptScene& kept, const std::string& first, const std::string& second,
                     const std::string& what) {
   return without_gil([&] {
@@ -187,7 +187,7 @@ struct KeptRecord {
   std::shared_ptr<const Scene> scene;
   Record record;
 
-  // Returns all missed pairs. The record may hold only the first ones.
+  // Returns all missed pairs. The record may hold only the first missed pairs.
   std::vector<TrianglePair> missed() const {
     const Accounting& known = record.verification.value();
     if (known.false_negatives <= known.examples.size()) return known.examples;
@@ -199,7 +199,7 @@ struct KeptRecord {
   }
 };
 
-// ignore: pairs of different objects; limit: 0 means no limit.
+// ignore: pairs of different objects. limit: maximum number of pairs; 0: no limit.
 RunOptions options_of(const GivenOptions& given, const Ignored& ignore, std::uint64_t limit,
                       bool verify = true, bool kinds = false) {
   RunOptions out{.verify = verify,
@@ -249,7 +249,7 @@ GivenList listed(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   return out;
 }
 
-// certificate: text of a certificate; pairs: a list to check, alone or with the certificate.
+// certificate: text of a certificate. pairs: a list of pairs to check. One of the two may be empty.
 py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certificate,
                   const std::optional<py::array>& pairs, std::optional<double> clearance) {
   const Scene& scene = *kept.scene;
@@ -273,8 +273,8 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
                   "text"_a = check_text(scene, check));
 }
 
-// Returns the pixels, the texts of the panels, and a page with the same answers. Unless `page` is
-// true, the page is empty.
+// Returns the pixels, the texts of the panels, and an HTML page with the same results. The page is
+// empty if `page` is false.
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom, int width,
                      int height, const std::string& device, unsigned threads, bool page) {
@@ -392,7 +392,7 @@ void add_runs(py::module_& module) {
     }
     return without_gil([&] { return to_text(certificate_of(*k.scene, k.record)); });
   });
-  // The keywords of run(), and whether each is a flag; method and limit are separate parameters.
+  // Maps the keywords of run() to true for flags. method and limit are separate parameters.
   py::dict options;
   for (const Option& option : run_options()) {
     if (option.take && option.name != std::string("method") && option.name != std::string("limit"))

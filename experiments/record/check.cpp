@@ -68,7 +68,7 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
   return out;
 }
 
-// Checks a list that has no certificate. Makes evidence, which the checker then verifies.
+// Checks a list without a certificate. Makes evidence, and the checker verifies the evidence.
 CheckResult check_list(const Scene& scene, const std::string& name,
                        std::span<const ListedPair> rows, double clearance) {
   const Stopwatch start;
@@ -77,7 +77,7 @@ CheckResult check_list(const Scene& scene, const std::string& name,
     const TrianglePair pair = pair_of(scene, name, row);
     if (pair.a != pair.b) listed.push_back(pair);
   }
-  // The evidence has to cover all pairs, so the pairs of ignored objects are added to `listed`.
+  // The evidence has to cover all pairs, so colliding pairs of ignored objects are added.
   if (const IgnoredObjects is_ignored(scene, scene.ignored); is_ignored.any()) {
     for (const TrianglePair& pair : all_colliding_pairs(scene, {.clearance = clearance}).pairs) {
       if (is_ignored(pair)) listed.push_back(pair);
@@ -86,12 +86,12 @@ CheckResult check_list(const Scene& scene, const std::string& name,
   CheckResult result =
       check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
   remove_ignored(scene, scene.ignored, result.meeting);
-  result.unattested.clear();  // such claims are about a run; there was no run
+  result.unattested.clear();  // unattested claims are about a run; there was no run
   result.ms = start.ms();
   return result;
 }
 
-// Compares the list with the pairs that meet. Afterwards the verdict covers the list as well.
+// Compares the list with the pairs that meet. Adapts the verdict, so that it covers the list, too.
 void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
                   SceneCheck& check) {
   CheckResult& result = check.result;
@@ -234,7 +234,7 @@ Verdict FrameVerdicts::in_all() const {
 }
 
 Json FrameVerdicts::json(long wanted) const {
-  // Nothing is proved about frames that were not checked.
+  // If some of the wanted frames were not checked, `proved` becomes `not proved`.
   const bool whole = all() == static_cast<std::uint64_t>(wanted);
   const Verdict verdict = in_all() == Verdict::proved && !whole ? Verdict::not_proved : in_all();
   const auto& bad = first_[static_cast<std::size_t>(verdict)];

@@ -24,8 +24,8 @@ const std::string& name_of(const Scene& scene, std::uint32_t object) {
   return scene.objects[object].name;
 }
 
-/// Returns how the surfaces meet, by the strongest kind of contact: "faces lie on each other in 24
-/// pairs of triangles".
+/// Returns the strongest kind of contact between two surfaces: "faces lie on each other in 24 pairs
+/// of triangles".
 std::string contact_words(const ClashRow& row) {
   using enum ContactKind;
   std::uint64_t n = 0;
@@ -41,7 +41,7 @@ std::string contact_words(const ClashRow& row) {
   return how + " in " + counted(n, "pair of triangles", "pairs of triangles");
 }
 
-/// Returns the id of a pair of parts. The id does not depend on the order of the names.
+/// Returns the id of a pair of parts. The order of the two names does not matter.
 std::string id_of(std::string a, std::string b) {
   if (b < a) std::swap(a, b);
   return sha256(a + '\n' + b).substr(0, 8);
@@ -55,7 +55,7 @@ struct CsvLine {
   std::vector<std::string> cells;
 };
 
-/// Splits a CSV, in the form that csv_cell() writes, into lines. Skips empty lines.
+/// Splits a CSV text, as csv_cell() writes it, into lines of cells. Skips empty lines.
 std::vector<CsvLine> csv_lines(const std::string& text) {
   std::vector<CsvLine> out;
   std::istringstream in(text);
@@ -102,8 +102,8 @@ bool is_hidden(const auto& row, const ClashTable& table) {
   return row.verdict == ClashVerdict::touch && !row.ignored && !lists_touches(table);
 }
 
-/// Returns why a clash or a containment has no depth. Empty if the row has a depth or another
-/// verdict.
+/// Returns why a clash or a containment has no depth. Returns "" if the row has a depth, or if the
+/// row has another verdict.
 std::string no_depth_words(const Scene& scene, const ClashRow& row) {
   const bool deep = row.verdict == ClashVerdict::clash || row.verdict == ClashVerdict::contained;
   if (!deep || row.depth) return "";
@@ -113,7 +113,7 @@ std::string no_depth_words(const Scene& scene, const ClashRow& row) {
 
 std::string rows_text(const Scene& scene, const ClashRecord& record, const ClashTable& table) {
   const std::string unit = table.unit.empty() ? "" : " (" + table.unit + ")";
-  Table out("lllrrrll", 3);  // 3 columns name a row: verdict and both names
+  Table out("lllrrrll", 3);  // the first 3 columns identify a row
   out.add({"verdict", "a", "b", "depth" + unit, "curve" + unit, "distance" + unit, "at", "what"});
   std::size_t all = 0;
   for (std::size_t k = 0; k < record.rows.size(); ++k) {
@@ -272,7 +272,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   const auto fail = [&](const std::string& reason, long line) {
     throw Error(name, reason, "name a file that farcull clash --csv wrote without --frames", line);
   };
-  using Row = std::array<std::string, 3>;  // two sorted names, the verdict
+  using Row = std::array<std::string, 3>;  // the two names, sorted, and the verdict
   const auto row_of = [](std::string a, std::string b, std::string verdict) {
     if (b < a) std::swap(a, b);
     return Row{std::move(a), std::move(b), std::move(verdict)};
@@ -285,7 +285,7 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
     if (!column.contains(wanted)) fail(fmt::format("has no column {}", wanted), 1);
   }
   if (column.contains("frame")) fail("has a column frame: it is about many frames", 1);
-  std::set<Row> old, forgiven;  // old: all rows of the file; forgiven: its rows of ignored pairs
+  std::set<Row> old, forgiven;  // old: all rows of the file; forgiven: rows of ignored pairs
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::vector<std::string>& cells = lines[k].cells;
     if (cells.size() != lines[0].cells.size())
@@ -305,8 +305,8 @@ ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
   }
   std::map<std::string, std::uint32_t> numbers;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) numbers[scene.objects[o].name] = o;
-  // Returns true if the record has no row for this pair: the pair was not examined, or it is near
-  // and ignored.
+  // Returns true if the record has no row for this pair because the pair was not examined, or
+  // because the pair is near and ignored.
   const auto left_out = [&](const std::string& name_a, const std::string& name_b, bool near) {
     if (!numbers.contains(name_a) || !numbers.contains(name_b)) return false;
     const auto [a, b] = std::minmax({numbers[name_a], numbers[name_b]});

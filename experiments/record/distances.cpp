@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
-// Words for DistancePairs, and words for WhichInside. WhichInside::unknown has no word.
+// Words for the values of DistancePairs and of WhichInside. WhichInside::unknown has no word.
 constexpr std::array kPairsAsked = {"objects", "nearest", "all"};
 constexpr std::array kInside = {"", "none", "a", "b", "not closed"};
 
@@ -77,8 +77,8 @@ std::string inside_cell(const Distance& d) {
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
-/// Returns a line with the least distance of all answers and its two objects. Empty if there are
-/// fewer than two answers.
+/// Returns a line with the least of all distances and its two objects. Returns "" if there are
+/// fewer than two distances.
 std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
   if (distances.size() < 2) return "";
   const auto least = std::min_element(

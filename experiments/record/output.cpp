@@ -1,4 +1,4 @@
-// Turns a record into JSON, CSV and a certificate, and a plan into a table and JSON.
+// Converts a record to JSON, CSV and a certificate, and a plan to a table and JSON.
 #include "experiments/record/output.h"
 
 #include <algorithm>
@@ -89,7 +89,7 @@ Json contacts_json(const Record& record) {
   return out;
 }
 
-// Appends six cells: the two ends of a segment, or a point twice. For other shapes they are empty.
+// Appends six cells: two ends of a segment, or a point twice. For other shapes, cells are empty.
 void append_ends(const ContactShape& shape, std::string& out) {
   for (const Vec3& end : shape.ends) {
     for (const double x : end) {
@@ -101,7 +101,7 @@ void append_ends(const ContactShape& shape, std::string& out) {
 }
 
 // Appends a cell with the corners of the polygon that two triangles have in common. Blanks separate
-// the coordinates.
+// the coordinates. The cell is empty if the common part is not a polygon.
 void append_polygon(const Scene& scene, const TrianglePair& pair, const ContactShape& shape,
                     std::string& out) {
   out += ',';
@@ -139,8 +139,8 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
   return lines;
 }
 
-// A range of Collisions::pairs, and the range of Collisions::neighbour_pairs that lie between these
-// pairs in sorted order.
+// A range of Collisions::pairs, and a range of Collisions::neighbour_pairs. In sorted order, the
+// neighbours lie between these pairs.
 struct RowRange {
   std::size_t pairs = 0, pairs_end = 0;
   std::size_t neighbours = 0, neighbours_end = 0;
@@ -204,7 +204,7 @@ class Rows {
   const PairListRows rows_;
 };
 
-// Divides the sorted pairs and neighbours into ranges, in order. A range has at most kRows pairs
+// Divides the sorted pairs and neighbours into consecutive ranges. A range has at most kRows pairs
 // and at most kRows neighbours.
 std::vector<RowRange> ranges_of(const Collisions& all) {
   constexpr std::size_t kRows = std::size_t{1} << 15;

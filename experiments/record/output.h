@@ -1,5 +1,5 @@
-// Writes a record for other programs, as JSON, CSV and certificate, and a plan for people and
-// programs.
+// Writes a record for other programs, as JSON, CSV and certificate. Writes a plan for people and
+// for programs.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace farcull {
 
 /// Returns a value of a record as JSON. A struct with fields becomes an object. An enumeration
-/// becomes its word. An empty optional and a number that is not finite become null.
+/// becomes a string. An empty optional and a number that is not finite become null.
 template <class Value>
 nlohmann::ordered_json json_of(const Value& value) {
   if constexpr (HasFields<Value>) {
@@ -44,7 +44,7 @@ nlohmann::ordered_json json_of(const std::vector<Value>& values) {
   return out;
 }
 
-/// Makes a JSON object with the given members of a struct. The names and the order are kept.
+/// Makes a JSON object from the given members of a struct. Keeps the members' names and order.
 #define FARCULL_JSON(value, ...)                                                \
   [&] {                                                                         \
     nlohmann::ordered_json out;                                                 \
@@ -81,49 +81,49 @@ nlohmann::ordered_json threads_json(const GlInfo& gl);
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
 /// Returns NotAsked (verify/certificate/certificate.h) of the scene: how many objects are not
-/// tested against themselves, how many pairs of triangles are inside such objects, and these
-/// objects as ranges (first and last).
+/// tested against themselves, how many pairs of triangles are inside these objects, and the objects
+/// as ranges (first and last).
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
                                   const std::string& hash);
 nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
-/// Returns for each triangle of a pair its object, its number in the object, and its face in the
+/// Returns, for each triangle of a pair, its object, its number in the object, and its face in the
 /// file.
 nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
-/// Returns a text as a cell of a CSV, in quotes if the text needs them.
+/// Returns a text as a CSV cell, in quotes if necessary.
 std::string csv_cell(const std::string& text);
 
-/// The additional columns of pairs_csv(), and the choice of its rows.
+/// Selects additional columns of pairs_csv(), and its rows.
 struct PairColumns {
-  bool faces = false;     // columns face_a, face_b: 0-based in the object's file
+  bool faces = false;     // columns face_a, face_b: 0-based face in the object's file
   bool contacts = false;  // column contact: the kind. Precondition: the record has kinds
   // Columns x0,y0,z0,x1,y1,z1: the ends of the common segment, or the common point twice, in world
   // units. Column polygon: the corners of the common polygon. Cells that do not apply are empty.
   // Precondition: the record has segments.
   bool segments = false;
-  bool names = false;                    // name_a, name_b: the names of the objects
-  std::vector<ContactKind> kinds = {};   // only pairs of these kinds; empty: all pairs
-  const ListNumbers* numbers = nullptr;  // null unless the scene is a part of another scene
+  bool names = false;                    // columns name_a, name_b: names of the objects
+  std::vector<ContactKind> kinds = {};   // rows: only pairs of these kinds; empty: all
+  const ListNumbers* numbers = nullptr;  // set if the scene is a part of another scene
 };
 
-/// Returns the colliding pairs in the format of verify/certificate/pair_list.h, sorted, each once.
-/// If an object is tested against itself, colliding neighbours are included. The columns that
-/// `columns` adds come last.
+/// Returns the colliding pairs in the format of verify/certificate/pair_list.h, sorted, without
+/// duplicates. If an object is tested against itself, colliding neighbours are included. The
+/// additional columns come last.
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
-/// Passes the text of pairs_csv() to `sink` part by part, so that the whole text is never in
-/// memory. The parts are made on all cores.
+/// Passes the text of pairs_csv() to `sink` in parts, so that the whole text is never in memory.
+/// All cores make the parts.
 void give_pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns,
                     const TextSink& sink);
-/// Return the header and the rows of pairs_csv(). Each row begins with `before`.
+/// The next two functions return the header and the rows of pairs_csv(). Rows begin with `before`.
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
 
 /// Returns the certificate of the run: claims about every pair of the scene, with evidence. The
-/// certificate has no times, so the same run gives the same text. whole: as in make_certificate().
+/// certificate has no times, so equal runs give equal texts. whole: as in make_certificate().
 Certificate certificate_of(const Scene& scene, const Record& record,
                            const WholeScene* whole = nullptr);
 
@@ -139,8 +139,8 @@ std::string decision_of(const Stage& stage);
 nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
                                       std::optional<std::uint64_t> seed = {});
 
-/// Return the first line of a CSV of distances, with the names of the columns; and a row for each
-/// distance. Each row begins with `before`.
+/// The next two functions return the header and the rows of a CSV of distances. Each row is about
+/// one distance and begins with `before`.
 std::string distances_header();
 std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                            const std::string& before = "");
@@ -152,7 +152,7 @@ std::string verdict_text(const DistanceAccounting& accounting);
 std::string accounting_sum(const DistanceAccounting& accounting);
 
 /// The differences between the rows of a record and the rows of an earlier CSV. Two rows are the
-/// same if they name the same two parts, in any order, with the same verdict.
+/// same if they have the same verdict and the same two parts, in any order.
 struct ClashComparison {
   struct Gone {
     std::string a, b, verdict;
@@ -161,37 +161,37 @@ struct ClashComparison {
   std::vector<Gone> gone;        // rows of the CSV that the record lacks
   std::uint64_t unexamined = 0;  // number of rows of the CSV whose pair was not examined
 };
-/// text: the CSV; name: the CSV's file. Throws Error if clash_csv() cannot have written the text.
+/// text: the CSV. name: name of its file. Throws Error if clash_csv() cannot have written the text.
 ClashComparison compare_clashes(const Scene& scene, const ClashRecord& record,
                                 const std::string& text, const std::string& name);
 
 struct ClashTable {
   std::vector<ClashVerdict> failing =
-      {};                 // passed to is_clean(); with `touch`, the table lists touches
+      {};                 // argument of is_clean(); with `touch`, touches are listed
   std::string unit = {};  // unit of the lengths, such as "mm"; empty: unknown
-  std::optional<ClashComparison> compared = {};  // differences to an earlier CSV
+  std::optional<ClashComparison> compared = {};  // differences from an earlier CSV
 };
 
 /// Returns a text for people: the summary, then the rows. Lengths have six digits, since the
-/// coordinates of a mesh file may be rounded to floats.
+/// coordinates of a mesh file may have been rounded to floats.
 std::string clash_text(const Scene& scene, const ClashRecord& record, const ClashTable& table);
 
-/// Returns the words after the verdict of a row, such as the kinds of contact.
+/// Returns the words that follow the verdict of a row, such as the kinds of contact.
 std::string clash_words(const Scene& scene, const ClashRow& row);
 
 /// Returns true if every wanted pair was examined, and no pair has the verdict clash, contained or
 /// unknown, or a verdict in `failing`.
 bool is_clean(const ClashRecord& record, const std::vector<ClashVerdict>& failing = {});
 
-/// Returns a row for each pair that is not clear; numbers have all digits. Then follows a row for
-/// each of ClashComparison::gone, with only the names and the old verdict.
+/// Returns a row for each pair that is not clear. Numbers have all digits. Then returns a row for
+/// each entry of ClashComparison::gone, with only the names and the old verdict.
 std::string clash_csv(const Scene& scene, const ClashRecord& record, const ClashTable& table = {});
 
 nlohmann::ordered_json clash_json(const Scene& scene, const ClashRecord& record,
                                   const ClashTable& table = {});
 
 /// A pair of parts over frames (`farcull clash --frames`). An optional value is empty if no frame
-/// lists the pair with such a value.
+/// has such a value for the pair.
 struct WorstClash {
   std::string name_a, name_b, id;
   ClashVerdict verdict = ClashVerdict::clear;  // the most serious verdict
@@ -199,25 +199,25 @@ struct WorstClash {
   long frames = 0, first = 0, last = 0;  // number, first and last of the frames with this verdict
   std::optional<double> depth = {};      // the largest lower bound on the depth
   std::optional<double> distance = {};   // the least distance; 0 if the surfaces meet
-  std::optional<long> deepest = {}, nearest = {};  // the first frame with `depth`, `distance`
+  std::optional<long> deepest = {}, nearest = {};  // the first frames with `depth` and `distance`
   FARCULL_FIELDS(name_a, name_b, id, verdict, ignored, frames, first, last, depth, deepest,
                  distance, nearest)
 };
 
-/// Collects the records of `farcull clash --frames`.
+/// Combines the records of all frames of `farcull clash --frames`.
 class ClashFrames {
  public:
-  /// wanted: how many frames were requested.
+  /// wanted: number of frames that were requested.
   explicit ClashFrames(long wanted) : wanted_(wanted) {}
 
   struct Report {
     nlohmann::ordered_json head, frame, summary;  // parts of the JSON, as in FrameReport
     std::string csv;                              // clash_csv() with a first column `frame`
-    std::string text;                             // the number of pairs by verdict
+    std::string text;                             // number of pairs with each verdict
   };
   /// Returns the report of a frame. In the first report, `csv` and `text` begin with their headers.
   Report add(const Scene& scene, const ClashRecord& record, const ClashTable& table, long frame);
-  /// Returns a text for people: the pairs of all frames, the most serious first.
+  /// Returns a text for people: the pairs of all frames, the most serious verdicts first.
   std::string text(const ClashTable& table) const;
 
  private:
@@ -225,7 +225,7 @@ class ClashFrames {
   bool is_clean() const { return clean_ && frames_ == wanted_; }
 
   nlohmann::ordered_json head_;
-  std::map<std::pair<std::string, std::string>, WorstClash> pairs_;  // keys: the two names
+  std::map<std::pair<std::string, std::string>, WorstClash> pairs_;  // keys: names of the two parts
   long wanted_ = 0, frames_ = 0;
   bool clean_ = true;
 };

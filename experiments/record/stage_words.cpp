@@ -1,4 +1,4 @@
-// Words for stages. A table has the words for kinds; switches have those for reasons and steps.
+// Words for stages. An array has words for kinds of stages. Switches have words for reasons.
 #include "experiments/record/stage_words.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-// The words for stages that people read in tables, JSON, the terminal's progress and the library.
+// Words for stages, which people read in tables, JSON, progress messages and the library.
 #pragma once
 
 #include "core/base/stage.h"
@@ -14,7 +14,7 @@ std::string level_name(std::uint32_t level);
 std::string to_string(Unit unit);
 /// Returns why a run used no device. Precondition: the run used no device.
 std::string no_device_reason(const std::vector<Stage>& trace);
-/// Returns the text of the step, or words such as "culling along z, round 2".
+/// Returns the step's own text, or words for its stage such as "culling along z, round 2".
 std::string text_of(const ProgressStep& step);
 
 }  // namespace farcull

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kExamplesShown = 5;
 
-// Wraps the lines of an answer to at most 80 columns. Tables may be wider.
+// Wraps the text of an answer at 80 columns or less. Tables may be wider.
 std::string answer(const std::string& text) {
   return wrapped(text, std::min<std::size_t>(80, text_columns()));
 }
@@ -48,7 +48,7 @@ std::string method_text(const Record& record) {
     text += fmt::format(", radius {}", radius_text(o.radius));
   if (drew) {
     text += depth_of(o) == DepthMode::fragment ? ", fragment depth" : ", fixed-function depth";
-    // The native canvas has no query modes.
+    // The canvas on the CPU has no query modes.
     if (!record.found.device.cpu)
       text += query_of(o) == QueryMode::flags ? ", flags" : ", occlusion queries";
   }
@@ -65,7 +65,7 @@ std::string views_text(const std::vector<ViewReport>& views) {
   return text + " px";
 }
 
-// Returns a line with the radius of the view with the largest budget, and the terms of this budget.
+// Returns a line with the radius of the view with the largest budget, and the terms of its budget.
 std::string radius_line(const Record& record) {
   const ViewReport* view = widest_budget(record.found.views());
   if (!fattens(record.options.method) || view == nullptr) return "";
@@ -90,8 +90,8 @@ struct Row {
   std::string key;  // stages with the same key share a row; empty: the row has one stage
   std::string name;
   std::string note;
-  std::vector<std::string> views;  // views of later rounds, or names of stages that were left out
-  Stage sum;                       // sums of ms; `in` of the first stage, `out` of the last
+  std::vector<std::string> views;  // views in later rounds, or names of stages left out
+  Stage sum;                       // sum of ms; `in` of the first stage, `out` of the last
 };
 
 // Returns the key of a stage's row: the view, or "later rounds". Empty if the stage has a row of
@@ -102,7 +102,7 @@ std::string key_of(const Stage& stage) {
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
-// Adds a stage that was left out: to the last row if the reason is the same, else as a new row.
+// Adds a stage that was left out. If the last row has the same reason, the stage joins that row.
 void add_left_out(const Stage& stage, std::vector<Row>& rows) {
   const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
   if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
@@ -196,8 +196,8 @@ std::string device_work_line(const Record& record) {
       ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
-// Returns a line with how many pairs a smaller radius would lose; empty if the record has no such
-// numbers.
+// Returns a line with the number of pairs that a smaller radius would miss. Returns "" if the
+// record has no such number.
 std::string risk_line(const Record& record) {
   if (!record.risk) return "";
   const auto& [smaller, bare] = *record.risk;
@@ -208,8 +208,8 @@ std::string risk_line(const Record& record) {
                                  : ": this run does not test the radius");
 }
 
-// Returns the kinds of contact that occur, such as "12 crossing + 3 touch-vertex"; empty if the run
-// determined no kinds.
+// Returns the kinds of contact that occur, such as "12 crossing + 3 touch-vertex". Returns "" if
+// the run determined no kinds.
 std::string contacts_line(const Record& record) {
   if (record.options.contacts == ContactDetail::none) return "";
   std::string text;
@@ -233,7 +233,7 @@ std::string ignored_line(const Record& record) {
   if (record.options.ignored.empty()) return "";
   const std::string objects =
       counted(record.options.ignored.size(), "pair of objects", "pairs of objects");
-  // If boxes decide, pairs of ignored objects never become candidates, so none are counted.
+  // If tests of boxes leave pairs of ignored objects out, these pairs are not counted.
   if (record.found.ignored == 0)
     return "ignored    " + objects + ", of which no candidate pairs were made\n";
   return fmt::format("ignored    {} of {}\n",
@@ -246,8 +246,8 @@ TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
   const auto after = std::upper_bound(
       scene.objects.begin(), scene.objects.end(), triangle,
       [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next object does, so the last object with this
-  // start is the owner.
+  // An object without triangles has the same first triangle as the next object. So the owner is the
+  // last object with this first triangle.
   const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
   return {owner, triangle - scene.objects[owner].first_triangle};
 }

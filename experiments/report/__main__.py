@@ -16,9 +16,9 @@ import signal
 import subprocess
 import sys
 
-# A row with a promise breaks the promise if one of these counts is above 0. Some counts are about missing answers.
+# Counts of a row. A method with a guarantee breaks the guarantee if one of these counts in its rows is above 0.
 BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung", "no_memory")
-FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # first and last chapters; the program orders the rest
+FIRST, LAST = ["headline", "error-time", "accuracy"], ["scenes"]  # first and last chapters; the rest are in the order of studies
 
 
 class Refusal(Exception):
@@ -34,7 +34,7 @@ class Interrupted(BaseException):
 
 
 try:
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides its messages about cache folders
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides matplotlib's messages about cache folders
     import pandas as pd
     import draw
     import frame
@@ -71,7 +71,7 @@ class Unfinished:
 
     def __init__(self, results):
         self.place, self.path, self.old = (results / name for name in ("report", ".report-unfinished", ".report-old"))
-        self.lock = os.open(results, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)  # the lock ends with the process
+        self.lock = os.open(results, os.O_RDONLY | os.O_CLOEXEC | os.O_DIRECTORY)  # the lock is released when the process ends
 
     def __enter__(self):
         try:
@@ -96,7 +96,7 @@ class Unfinished:
             raise Refusal(self.place, f"cannot be put in place: {error.strerror}", "see who may write to the folder") from error
 
     def __exit__(self, *_):
-        if self.old.exists() and not self.place.exists():  # a process was killed between the two steps of publish()
+        if self.old.exists() and not self.place.exists():  # true if a process was killed between the two steps of publish()
             self.old.rename(self.place)
         for path in (self.path, self.old):
             shutil.rmtree(path, ignore_errors=True)
@@ -131,7 +131,7 @@ class Reporter:
         for where, of in [("", study)] + [(f" on {device}", of) for device, of in others]:
             self.broken += [f"{study.name}{where}: {describe(row)}" for row in promising(of.rows).itertuples()
                             if any(value(row, name) > 0 for name in BROKEN)]
-        # A chapter may find something broken although each row is right, for example that energy grew.
+        # A chapter may find a broken guarantee although each row is right, for example if energy grew.
         if len(self.broken) == before:
             self.broken += [f"{study.name}: {text}" for broken, text in chapter.findings if broken]
         if not study.complete:

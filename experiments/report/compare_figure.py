@@ -5,7 +5,7 @@ import os
 import sys
 
 try:
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides its messages about cache folders
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hides matplotlib's messages about cache folders
     import pandas as pd
     import draw
     from frame import Figure, Panel, Series, log
@@ -26,7 +26,7 @@ def figure_of(rows):
     rows = rows.assign(series=[named(row, rows) for row in rows.itertuples()])
     series = []
     for name, of in rows.groupby("series", sort=False):
-        # The label of a line's first point includes the name of the line.
+        # The label of the first point of a line includes the name of the line.
         px = [f"{at} px" if at else "" for at in of.resolution]
         labels = [f"{name} {px[0]}".strip(), *px[1:]]
         series.append(Series(name, list(of.ms), list(of.missed), emphasis=of.iloc[0].method == "far", x_low=list(of.least_ms),

@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 from estimates import grouped, sentence  # noqa: E402
 
-# Figures fit a journal: text has 8 pt in a figure of printed width. The same numbers give the same files.
+# The printed figures fit the columns of a journal and have text of 8 pt. Equal data give equal files.
 matplotlib.rcParams.update({
     "font.family": "DejaVu Sans", "text.parse_math": False, "axes.unicode_minus": True, "lines.solid_capstyle": "butt",
     **dict.fromkeys(("font.size", "axes.titlesize", "axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 8),
@@ -31,12 +31,12 @@ matplotlib.rcParams.update({
         ("major.size", 2.5), ("minor.size", 1.2), ("major.pad", 2))},
     "svg.hashsalt": "farcull", "svg.fonttype": "none", "pdf.fonttype": 42})
 
-DOUBLE, SINGLE = 504.0, 244.0  # points: two columns of a journal, 178 mm; one column, 86 mm
-LINE = 11.0         # points: distance of lines of text
+DOUBLE, SINGLE = 504.0, 244.0  # widths in points: two columns of a journal (178 mm), one column (86 mm)
+LINE = 11.0         # distance between lines of text, in points
 DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DASHES = ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
-MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # with a blank: hollow
-KNOWN = [  # the first entry whose words are in a name applies
+MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # a blank means a hollow marker
+KNOWN = [  # (words, colour, dash, marker); the first entry whose words are in a name applies
     ("boxes", "#009e73", 0, "^"), ("farcull", "#009e73", 0, "o"), ("interval", "#009e73", 0, "^"),
     ("far exact", "#56b4e9", 0, "s"), ("exact offset", "#56b4e9", 0, "s"),
     ("far", "#0072b2", 0, "o"), ("obb union", "#0072b2", 0, "o"),
@@ -163,7 +163,7 @@ def scale_axis(ax, side, spec, values, room):
     else:
         positive = [v for v in values if v > 0] or [1.0]
         highest = max(spec.high or max(positive), min(positive))
-        least = spec.low or max(min(positive), highest * 1e-200)  # matplotlib cannot transform more decades
+        least = spec.low or max(min(positive), highest * 1e-200)  # matplotlib cannot draw more decades
         air = 10 ** min(0.3, 0.03 * max(math.log10(highest) - math.log10(least), 0.08))
         low, high = least / (1 if spec.low else air), highest * (1 if spec.high else air)
         low, high = (low / 2, high * 2) if high < 1.3 * low else (low, high)
@@ -243,7 +243,7 @@ class Drawer:
         grid = self.canvas.add_gridspec(len(heights), columns, height_ratios=heights)
         for at, panel in enumerate(panels):
             row, column = divmod(at, columns)
-            # If the panel below or on the left has the same label, only that panel shows the label.
+            # A label is shown only once if the panel below (x axis) or on the left (y axis) has the same label.
             below, left = (panels[i] if 0 <= i < len(panels) else None for i in (at + columns, at - 1))
             self.panel(panel, [grid[2 * row + part, column] for part in (0, 1)], strips[row], (
                 below is None or below.x.label != panel.x.label, column == 0 or left.y.label != panel.y.label), column == 0)
@@ -251,8 +251,8 @@ class Drawer:
             self.canvas.legend(handles=self.key, loc="lower center", ncol=key_columns, frameon=False, handlelength=2.5,
                                columnspacing=1.5, labelspacing=0.3, borderpad=0.2)
         self.canvas.draw_without_rendering()
-        self.canvas.set_layout_engine("none")  # the layout is the same for each kind of file
-        for ax in self.canvas.axes:  # rounds, since the solver's last digits differ from run to run
+        self.canvas.set_layout_engine("none")  # keeps the same layout for each kind of file
+        for ax in self.canvas.axes:  # rounds, since the last digits of the layout differ between runs
             ax.set_position([round(at, 5) for at in ax.get_position(original=True).bounds])
         for ax, panel in zip(self.canvas.axes if labelled else [], panels):
             self.label(ax, panel)
@@ -266,7 +266,7 @@ class Drawer:
         points = [(s.name, text, at, *(ax.transData.transform(at) * scale)) for s in panel.series
                   for *at, text in zip(s.x, s.y, s.labels or [""] * len(s.x)) if len(finite(at)) == 2]
         taken = [(x - 3, y - 3, x + 3, y + 3) for *_, x, y in points]
-        for s in panel.series:  # intervals and lines cannot be covered, either; lines are cut into squares
+        for s in panel.series:  # labels must not cover intervals and lines; a line is a row of squares
             for low, high, y in zip(s.x_low, s.x_high, s.y):
                 (left, at), (right, _) = (ax.transData.transform((x, y)) * scale for x in (low, high))
                 taken.append((left, at - 2, right, at + 2))
@@ -314,7 +314,7 @@ class Drawer:
         for mark in panel.marks:
             if math.isfinite(mark.at) and (mark.at > 0 or not (panel.x if mark.vertical else panel.y).log):
                 (ax.axvline if mark.vertical else ax.axhline)(mark.at, **mark_look(self.figure, mark.name))
-        # Draws the thick, emphasised series first, so that a series with the same values stays visible on top of them.
+        # Draws the emphasised, thick series first. Thinner series with the same values stay visible on top.
         drawn = [self.series(ax, panel, s) for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
             ax.text(0.5, 0.5, "no valid measurement", transform=ax.transAxes, ha="center", va="center", color="#666666")
@@ -420,7 +420,7 @@ def inline_svg(svg, prefix):
 
 # ---- preparing a figure and its caption
 
-LONGEST_NAME = 85  # characters that fit into the key
+LONGEST_NAME = 85  # number of characters that fit into the key
 SHADED = "The shaded part of an axis is linear, from 0 on; beyond, the axis is logarithmic."
 
 
@@ -437,7 +437,7 @@ def merge_series(figure):
     for group in groups.values():
         if len(group) == 1:
             continue
-        # The first name gives the colour. An emphasised series or FAR comes first.
+        # The first name determines the colour. Names of emphasised series and of FAR come first.
         group.sort(key=lambda n: not (n in emphasised or n.startswith("FAR")))
         name = " = ".join(group)
         if len(name) > LONGEST_NAME:

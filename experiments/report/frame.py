@@ -52,12 +52,12 @@ class Series:
     x: list = field(default_factory=list)
     y: list = field(default_factory=list)
     style: str = "lines_points"  # or "lines", "points"
-    emphasis: bool = False       # drawn thick: a method of farcull, or the subject of the figure
-    x_low: list = field(default_factory=list)  # lower ends of intervals along x: as many as x, or none
+    emphasis: bool = False       # drawn with thick lines: a method of farcull, or the subject of the figure
+    x_low: list = field(default_factory=list)  # lower ends of intervals along x; one per point, or none
     x_high: list = field(default_factory=list)
     y_low: list = field(default_factory=list)
     y_high: list = field(default_factory=list)
-    labels: list = field(default_factory=list)  # texts beside the points, used instead of a key; as many as x, or none
+    labels: list = field(default_factory=list)  # texts beside the points, which replace a key; one per point, or none
 
 
 @dataclass
@@ -72,12 +72,12 @@ class Mark:
 class Axis:
     """A logarithmic axis that shows zeros has a linear, shaded part from 0 to 1. If values are below 1, this part ends at a
     power of ten below all values."""
-    label: str = ""  # such as "time (ms)": with the unit
+    label: str = ""  # with the unit, such as "time (ms)"
     log: bool = False
     zero: bool = False
-    low: float = None  # fixed lower end; None: from the values
+    low: float = None  # lower end of the axis; None: computed from the values
     high: float = None
-    even: bool = False  # shows only the values of the series, in their order, at even distances
+    even: bool = False  # true: ticks are only at the values of the series, equally spaced
 
 
 def log(label, zero=False, low=None, high=None):
@@ -91,18 +91,18 @@ class Panel:
     y: Axis = field(default_factory=Axis)
     series: list = field(default_factory=list)
     marks: list = field(default_factory=list)
-    strip: list = field(default_factory=list)  # Series without y; each is a row below the panel
+    strip: list = field(default_factory=list)  # Series objects without y values; each is drawn as a row below the panel
 
 
 @dataclass
 class Figure:
-    name: str  # the name of its files; [a-z0-9-]
+    name: str  # name of the figure's files; [a-z0-9-]
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
-    columns: int = 0      # columns of panels, up to 4; 0: draw.py chooses
-    narrow: bool = False  # as wide as one of two columns of a journal
-    named: bool = False   # each series is one point with its name beside it; there is no key
+    columns: int = 0      # number of columns of panels, up to 4; 0: draw.py chooses
+    narrow: bool = False  # true: the figure is as wide as one of two columns of a journal
+    named: bool = False   # true: each series is one point, labelled with its name; no key
 
 
 @dataclass
@@ -111,7 +111,7 @@ class Table:
     name: str
     caption: str
     columns: list
-    rows: list = field(default_factory=list)  # each row is a list of the texts to show
+    rows: list = field(default_factory=list)  # each row is a list of texts
 
 
 @dataclass
@@ -129,12 +129,12 @@ class Chapter:
     title: str
     question: str
     command: str  # the command that measures the study again
-    findings: list = field(default_factory=list)  # pairs: whether a promise is broken, and a sentence
-    limits: list = field(default_factory=list)    # what was not measured
+    findings: list = field(default_factory=list)  # pairs (broken, sentence); broken: a guarantee was broken
+    limits: list = field(default_factory=list)    # sentences about what was not measured
     figures: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     pictures: list = field(default_factory=list)
-    files: dict = field(default_factory=dict)     # further files of the report: from name to text
+    files: dict = field(default_factory=dict)     # additional files of the report: name -> text
 
     def find(self, text):
         self.findings.append((False, text))
@@ -151,8 +151,8 @@ class Study:
     seed: int
     points: pd.DataFrame
     all_rows: pd.DataFrame
-    constants: dict = field(default_factory=dict)  # numbers of the program, by name
-    folder: str = ""  # the folder of the store
+    constants: dict = field(default_factory=dict)  # constants of the program, by name
+    folder: str = ""  # folder of the store
 
     @property
     def rows(self):
@@ -454,7 +454,7 @@ def add_promises(chapter, study):
                      f"promise {'does' if silent == 1 else 'do'} not say what they missed.")
 
 
-# ---- what answered, and which pairs could have been missed
+# ---- devices that computed the rows, and pairs that could have been missed
 
 def same_pixels(rows, row):
     """Returns the rows with the same scene, frame, resolution and views as `row`."""

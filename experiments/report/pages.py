@@ -13,8 +13,8 @@ from draw import inline_svg
 from estimates import grouped, of_all, sentence
 from frame import Table, columns
 
-FRONT = "headline"  # the study of the first page
-MOST_ROWS = 16  # a table with more rows is only in a file, not on the page
+FRONT = "headline"  # the study that is shown on the first page
+MOST_ROWS = 16  # a table with more rows is written only to a file
 MARK = '<meta name="generator" content="farcull report">'  # marks an index.html that this program made
 
 
@@ -227,14 +227,14 @@ def page_html(page):
 
 # ---- tables
 
-# Characters that pdfLaTeX's text fonts lack, and characters with a meaning in LaTeX.
+# LaTeX text for characters that pdfLaTeX's text fonts lack, and for characters with a meaning in LaTeX.
 LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
          "→": "$\\to$", "−": "$-$", "∞": "$\\infty$", "µ": "$\\mu$", "≈": "$\\approx$",
          "⁻": "$^{-}$", **{d: f"$^{i}$" for i, d in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
          **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
          "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
          "|": "$|$", "`": ""}
-ROWS_OF_FLOAT = 40  # rows in one float, so that the float fits on a page
+ROWS_OF_FLOAT = 40  # number of rows of one LaTeX float, so that the float fits on a page
 
 
 def latex_text(text):
@@ -243,7 +243,7 @@ def latex_text(text):
 
 def table_csv(table):
     out = io.StringIO()
-    csv.writer(out).writerows([[name for name, _ in table.columns]] + table.rows)  # RFC 4180
+    csv.writer(out).writerows([[name for name, _ in table.columns]] + table.rows)  # CSV as in RFC 4180
     return out.getvalue()
 
 

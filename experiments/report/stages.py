@@ -23,7 +23,7 @@ SCENES = ("two-bunnies dragon-bunny armadillo-elephant bunny-dragon breaking-dra
           "two-tori torii cylinders crowd needles needles-crossed needles-layers stack mannequin-devil+self cad-cut").split()
 DEFAULT = "boxes"
 FORMS = ["objects", "triangles", DEFAULT, "exact"]  # broad phases of far, then methods
-# Scenes whose exact tests take longer than drawing. Other directions of views are tried on these scenes.
+# Scenes whose exact tests take longer than drawing. On these scenes, other viewing directions are tried as well.
 LOOKED_AT = "needles-crossed needles-layers cad-cut mannequin-devil+self".split()
 DIRECTIONS, SIDES = 20, (64, 1024)
 # One of these libraries is the fastest on every scene of docs/results/bench.md.
@@ -66,7 +66,7 @@ def run(program, scene, form):
             words = stage["name"].split()
             if words[0] in ("boxes", "patches"):
                 left["boxes"] = stage["out"]
-            elif words[-1] == "1":  # as in "cull triangles x, round 1"
+            elif words[-1] == "1":  # a name such as "cull triangles x, round 1"
                 left[words[-3]] = stage["out"]
     return {"ms": ms, "left": left, "triangles": record["scene"]["triangles"], "tested": record["candidate_pairs"],
             "found": record["all_colliding_pairs"]}

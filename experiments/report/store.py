@@ -11,7 +11,7 @@ import pandas as pd
 
 from frame import Study, contestant
 
-ROUNDS = 3  # rounds of a timed point: kRounds of experiments/studies/point.h
+ROUNDS = 3  # number of rounds of a timed point; equals kRounds of experiments/studies/point.h
 AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views", "frame", "seed"]
 
 
@@ -19,7 +19,7 @@ class Store:
     def __init__(self, folder):
         self.folder, self.path = folder, f"{folder}/results.sqlite"
         name = urllib.parse.quote(str(pathlib.Path(self.path).absolute()))
-        # Opened read-write, so that SQLite can first roll back the unfinished work of a killed program.
+        # Opened for writing, so that SQLite can first roll back the unfinished transaction of a killed program.
         self.database = sqlite3.connect(f"file:{name}?mode=rw", uri=True)
         self.runs = self.read("SELECT * FROM runs ORDER BY run")
         self.names = list(self.read("SELECT study FROM studies ORDER BY rowid").study)
@@ -43,7 +43,7 @@ class Store:
         rows = rows.loc[:, ~rows.columns.duplicated()].drop(columns="study")
         counts, times = ([json.loads(text) for text in texts] for texts in (rows.counts, rows.times))
         rows["counts"], rows["times"] = counts, times
-        # A void round (other programs took the processors) becomes an empty tuple, so that later rounds keep their places.
+        # A round is void if other programs used the processors. A void round becomes (), so later rounds keep their index.
         rounds = [t.get("rounds", []) for t in times]
         rows["rounds"] = [tuple(() if r["void"] else tuple(r["ms"]) for r in of) for of in rounds]
         rows["runs"] = [sum(of, ()) for of in rows.rounds]

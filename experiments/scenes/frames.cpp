@@ -1,4 +1,4 @@
-// Makes frames by a built-in motion, or reads meshes again for each frame.
+// Makes the frames of a moving scene by a built-in motion, or by reading meshes for each frame.
 #include "experiments/scenes/frames.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
   });
 }
 
-// Returns the Error for the first numbered name in `paths` that has no file for this frame.
+// Returns an Error for the first path that has a %d or %04d, but no file for this frame.
 std::optional<Error> missing_file(const std::vector<std::string>& paths, const FrameRange& range,
                                   long frame) {
   for (const std::string& path : paths) {
@@ -30,7 +30,7 @@ std::optional<Error> missing_file(const std::vector<std::string>& paths, const F
       return std::filesystem::exists(numbered(path, number), error);
     };
     if (!is_numbered(path) || exists(frame)) continue;
-    constexpr long kTried = 1000;  // first numbers below this are tried; most are 0 or 1
+    constexpr long kTried = 1000;  // tries frame numbers below this to find the first file
     long first = exists(range.first) ? range.first : 0;
     while (first < kTried && !exists(first)) ++first;
     long last = first;
@@ -100,7 +100,7 @@ const Scene& FrameSource::at(long frame) {
     scene_ = std::move(now);
     for (Object& object : scene_.objects) object.self = object.self || self_;
   } else if (arguments_.ignore) {
-    scene_ = built_in_->at(frame);  // copied into the same memory in each frame
+    scene_ = built_in_->at(frame);  // copies into the memory of the previous frame
     ignore_more(scene_, arguments_, first_ ? UnknownName::refused : UnknownName::passed_over);
   }
   const Scene& scene = built_in_ && !arguments_.ignore ? built_in_->at(frame) : scene_;

@@ -1,4 +1,4 @@
-// A scene that moves, frame by frame.
+// Provides a moving scene frame by frame.
 //
 // In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
 // same memory, so that a device needs only the new vertices.
@@ -21,12 +21,12 @@ struct FrameRange {
 /// more than a million frames, and for numbers above 1e9.
 FrameRange parse_frames(const std::string& text);
 
-/// A scene that depends on the number of a frame.
+/// A scene that depends on the frame number.
 class FrameSource {
  public:
   /// arguments: as for load_scene(), either a built-in scene that moves, or meshes. A %d or %04d in
   /// the name of a mesh stands for the number of the frame. self: every object is also tested
-  /// against itself. Throws Error if nothing moves, or as load_scene() does for the first frame.
+  /// against itself. Throws Error if no object moves, or as load_scene() does for the first frame.
   FrameSource(SceneArguments arguments, FrameRange range, bool self);
   explicit FrameSource(MovingScene moving);
 

@@ -1,4 +1,4 @@
-// Finds the objects that are not tested against each other, by patterns of their names.
+// Finds the pairs of objects that are not tested against each other, by patterns of names.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ constexpr const char* kRemedy =
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// True if text[at] is a backslash before a comma, a colon or a *. The backslash makes this
-/// character a part of a name.
+/// True if text[at] is a backslash before a comma, a colon or a *. The character after the
+/// backslash is then part of a name.
 bool escapes(std::string_view text, std::size_t at) {
   return text[at] == '\\' && at + 1 < text.size() &&
          std::string_view(",:*").find(text[at + 1]) != std::string_view::npos;
@@ -39,8 +39,8 @@ std::size_t find_plain(std::string_view text, char character, std::size_t from =
   return std::string_view::npos;
 }
 
-/// True if the name matches the pattern; a * in the pattern stands for any characters. After a
-/// mismatch, the last * is matched with one more character.
+/// True if the name matches the pattern. A * in the pattern stands for any characters. After a
+/// mismatch, matching continues with one more character for the last *.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
   while (n < name.size()) {
@@ -79,7 +79,7 @@ bool doubtful(const Scene& scene, std::string_view pattern,
 
 constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
 
-/// Returns the end of an Error's remedy: the name probably meant, and some names of objects.
+/// Returns text for an error message: a suggestion for the name, and some names of objects.
 std::string some_names(const Scene& scene, std::string_view unknown = {}) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> known;
@@ -105,7 +105,7 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
   return in_order(std::move(out));
 }
 
-/// Appends the pairs of objects that names.text stands for. A name may contain colons, so each
+/// Appends the pairs of objects that names.text selects. A name may contain colons, so each
 /// colon of the text is tried as the separator of the two names.
 void append(const Scene& scene, const IgnoredNames& names, UnknownName lacking,
             std::vector<ObjectPair>& out) {

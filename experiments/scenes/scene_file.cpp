@@ -1,4 +1,4 @@
-// Reads scene files, mesh files and built-in scenes.
+// Loads scenes: scene files, mesh files and built-in scenes.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ class Reading {
   using pointer = const char*;
   using reference = const char&;
 
-  // *line is increased at each newline.
+  // Each newline increases *line.
   Reading(const char* at, long* line) : at_(at), line_(line) {}
   reference operator*() const { return *at_; }
   Reading& operator++() {
@@ -59,7 +59,7 @@ struct Lines {
 // first error, a key that occurs twice in one object, and line numbers (Lines).
 class Syntax : public nlohmann::json_sax<json> {
  public:
-  // line: the line of the character that was read last.
+  // line: a reference to the line of the character that was read last.
   explicit Syntax(const long& line) : line_(line) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -106,22 +106,22 @@ class Syntax : public nlohmann::json_sax<json> {
   const long& line_;
   std::vector<std::set<std::string>> keys_;
   int arrays_ = 0;    // number of open arrays
-  std::string last_;  // the last key of the outermost object
+  std::string last_;  // the key that was read last in the outermost object
 };
 
-// Returns the path of a mesh whose name is relative to the scene file.
+// Returns the path of a mesh whose name is relative to the folder of the scene file.
 std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
 // Reads the values of a scene file. Many functions take a value and its place in the file, such as
-// objects[1].scale. They throw Error naming the file and the place if the value has a wrong type.
+// objects[1].scale. Such a function throws Error naming file and place if the type is wrong.
 class SceneFile {
  public:
   SceneFile(std::string path, Lines lines, MeshCache& meshes)
       : path_(std::move(path)), lines_(std::move(lines)), meshes_(meshes) {}
 
-  // Calls added() after each object.
+  // Adds the objects of the file to a builder. Calls added() after each object.
   SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
     check_keys(root, "", {"name", "objects", "ignore"});
@@ -311,7 +311,7 @@ class SceneFile {
     return out;
   }
 
-  // Reads the upper three rows of a 4 x 4 matrix.
+  // Returns the upper three rows of a 4 x 4 matrix. The last row must be 0, 0, 0, 1.
   std::array<std::array<double, 4>, 3> matrix(const json& value, const std::string& place) const {
     const std::string form =
         "write four rows of four numbers, as in [[1,0,0,X],[0,1,0,Y],[0,0,1,Z],[0,0,0,1]]";
@@ -344,7 +344,7 @@ struct Parsed {
   Lines lines;
 };
 
-// Throws Error if the syntax is wrong or if a key occurs twice in one object.
+// Parses a scene file. Throws Error if the syntax is wrong or a key occurs twice in one object.
 Parsed parsed(const std::string& text, const std::string& path) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
@@ -380,10 +380,10 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
                                     const TakePart& take) {
-  std::size_t bytes = 0;  // size of the parts since the cache was emptied
+  std::size_t bytes = 0;  // total size of the parts since the cache was emptied
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
   const bool ignores = file.root.contains("ignore");
-  Scene names;  // has only the names of all objects
+  Scene names;  // has all objects, but only their names
   SceneFile reader(path, file.lines, meshes);
   reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
@@ -404,7 +404,7 @@ std::vector<ObjectPair> stream_file(const std::string& path, MeshCache& meshes,
 // Returns a name for the object of each mesh file: the file's name without its extension. If
 // several files have the same name, their folders are added.
 std::vector<std::string> object_names(const std::vector<std::string>& paths) {
-  std::map<std::string, std::set<std::string>> called;  // the paths, by the name without extension
+  std::map<std::string, std::set<std::string>> called;  // keys: names without extension
   for (const std::string& path : paths) called[mesh_stem(path)].insert(path);
   std::vector<std::string> out;
   for (const std::string& path : paths) {

@@ -1,5 +1,5 @@
 // Makes a scene from command-line arguments that name mesh files, a built-in scene or a scene file.
-// stream_scene() passes on the scene part by part, for callers whose memory cannot hold it.
+// stream_scene() passes on the scene in parts, for callers without memory for the whole scene.
 #pragma once
 
 #include <initializer_list>
@@ -10,19 +10,19 @@
 
 namespace farcull {
 
-// Pairs of objects that are not tested against each other. Options and files name the objects
-// (ignored.cpp).
+// The next declarations concern pairs of objects that are not tested against each other. Options
+// and files name the objects (ignored.cpp).
 
 /// How to treat a name that no object has. After the first frame such names are passed over, since
 /// objects may appear and disappear.
 enum class UnknownName { refused, passed_over };
 
-/// Returns all pairs of two different objects of which one matches the pattern `first` and the
-/// other matches the pattern `second`. A * in a pattern stands for any characters. Throws Error if
+/// Returns all pairs of two different objects in which one object matches the pattern `first`, and
+/// the other object matches `second`. A * in a pattern stands for any characters. Throws Error if
 /// - a pattern is the name of an object, but also matches other objects;
 /// - a pattern matches no object, unless `lacking` is passed_over;
 /// - both patterns match the same single object, unless `lacking` is passed_over.
-/// Errors name `where` and `line`, and call the pair `what`.
+/// where, line, what: the file or option, its line and the name of the pair in errors.
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
                                       const std::string& what, long line = 0,
@@ -47,8 +47,8 @@ std::vector<IgnoredNames> read_ignored(const std::string& path);
 std::vector<IgnoredNames> ignored_names(const std::optional<std::string>& list,
                                         const std::optional<std::string>& file);
 
-/// For each text, returns the pairs of two different objects, one from each group, in the order of
-/// in_order(). A name may hold colons, so each colon of a text is tried as the separator of the
+/// Returns the pairs of two different objects, one from each group of an IgnoredNames, in the order
+/// of in_order(). A name may hold colons, so each colon of a text is tried as the separator of the
 /// groups. Throws Error naming `where` and the line if a text has no colon, or if several of its
 /// colons separate groups that have objects. Throws Error as pairs_between() does.
 std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
@@ -65,11 +65,11 @@ struct SceneArguments {
   std::optional<std::string> format;  // format of a mesh on standard input; read by named_format()
   std::optional<std::string> ignore;  // read by parse_ignored()
 
-  /// Returns the arguments as words of a command line.
+  /// Returns the arguments as the words of a command line.
   std::vector<std::string> words() const;
 };
 
-/// Loads the scene that the arguments name. Their `names` are one of
+/// Loads the scene that the arguments name. arguments.names has one of these forms:
 /// - one or more mesh files (.obj, .off, .ply or .stl, perhaps with .gz after it). Each file is an
 ///   object, named after the file without extension. The folder is added if another file has the
 ///   same name;
@@ -77,7 +77,7 @@ struct SceneArguments {
 /// - one scene file, JSON (docs/scenes.md).
 /// A mesh that is named several times is read once. If meshes are welded, the name of the scene
 /// says so. Scene::ignored has the pairs of the scene file and those of `ignore`. Throws Error
-/// naming the file if an argument cannot be read or is not of this form. For a scene file, the
+/// naming the file if an argument cannot be read or has none of these forms. For a scene file, the
 /// Error also names the line, or the place of a wrong value such as objects[1].rotate.axis.
 Scene load_scene(const SceneArguments& arguments);
 /// Throws Error if `weld` or `format` is given, but applies to no mesh in `names`.
@@ -85,7 +85,7 @@ void require_meshes(const SceneArguments& arguments);
 /// Adds the pairs of `ignore` to Scene::ignored, as load_scene() does. Throws Error as
 /// ignored_objects() does.
 void ignore_more(Scene& scene, const SceneArguments& arguments, UnknownName lacking);
-/// Does the same as load_scene(arguments), but keeps the meshes that it reads in `meshes`.
+/// Does the same as load_scene(arguments), and keeps the meshes in `meshes` for later calls.
 Scene load_scene(const SceneArguments& arguments, MeshCache& meshes);
 
 /// True if load_scene() treats the name as that of a scene file.
@@ -95,19 +95,19 @@ bool is_scene_file(const std::string& name);
 std::vector<std::string> meshes_of_scene_file(const std::string& path);
 
 /// Does the same as load_scene() for the text of a scene file. path: named in errors; mesh paths
-/// are relative to its folder.
+/// are relative to the folder of `path`.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
 struct SceneFileObject {
   std::string name, mesh;
   bool self = false;
 };
-/// Returns the text of a scene file. ignored: pairs of names of objects.
+/// Returns the text of a scene file. ignored: pairs of objects, each given by two names.
 std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
                             const std::vector<std::pair<std::string, std::string>>& ignored);
 
-/// Throws Error if `name` is neither a file nor a name that parse_scene_name() accepts. Accepts
-/// each name with a %, since such a name may stand for the files of several frames (%d).
+/// Throws Error if `name` is neither a file nor a name that parse_scene_name() accepts. Accepts all
+/// names that contain a %, since a name with %d may stand for the files of several frames.
 void require_known(const std::string& name);
 
 /// Receives a part of a scene: some consecutive objects, as a valid scene with the name of the
@@ -127,7 +127,7 @@ std::vector<ObjectPair> stream_scene(const SceneArguments& arguments, const Take
 // Scenes as files (write_scene.cpp): a mesh for each object, and a scene file that names the
 // meshes. Numbers have 17 significant digits, so that every double is read back unchanged.
 
-/// The files that one call has written.
+/// The files that one call of write_scene() has written.
 struct WrittenScene {
   std::string scene_file;  // FOLDER/scene.json
   std::uint64_t files = 0;
@@ -136,7 +136,7 @@ struct WrittenScene {
 
 /// Writes each object as NAME.off, with the vertices that the object uses. Then writes scene.json;
 /// loading this file gives a scene with the same scene_hash(). NAME is the object's name, with '-'
-/// for everything but letters, digits, '.' and '-'. If two names are equal, a number is added.
+/// in place of other characters than letters, digits, '.' and '-'. Equal names get a number.
 /// Creates `folder`, but not its parents, if it does not exist; replaces existing files. If the
 /// system refuses a path, removes the new files and throws Error naming the path. Precondition:
 /// every object has a triangle.

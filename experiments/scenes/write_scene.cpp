@@ -63,7 +63,7 @@ class Folder {
   WrittenScene written_;
 };
 
-// Returns for each object the name of its file without extension. No two names are equal.
+// Returns a file name without extension for each object. No two names are equal.
 std::vector<std::string> file_names(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -90,7 +90,7 @@ MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
   return parts.take();
 }
 
-// Returns the pairs of ignored objects by name. Throws Error if the names also select other pairs.
+// Returns the names of each pair of ignored objects. Throws Error if two names match other pairs.
 std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const ObjectPair& pair : scene.ignored) {

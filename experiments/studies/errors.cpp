@@ -19,13 +19,13 @@ using enum Method;
 
 struct ErrorScene {
   std::string name;
-  bool self = false;   // objects are tested against themselves
-  bool drawn = false;  // drawn at random
-  bool again = false;  // drawn with another seed than the scene's default
+  bool self = false;   // each object is tested against itself
+  bool drawn = false;  // the scene is drawn at random
+  bool again = false;  // drawn with a seed that is not the scene's default
 };
 
-// objects: scenes of smooth surfaces and scans. drawn: randomly drawn scenes; each is used with
-// several seeds.
+// Returns the scenes of both lists. objects: scenes of smooth surfaces and scans. drawn: randomly
+// drawn scenes; each is returned with several seeds.
 std::vector<ErrorScene> scenes_of(const std::vector<std::string>& objects,
                                   const std::vector<std::string>& drawn, bool quick) {
   std::vector<ErrorScene> out;
@@ -45,9 +45,9 @@ std::vector<ErrorScene> accuracy_scenes(bool quick) {
                    {"needles:60", "random-soup", "slivers:200:1e6", "field"}, quick);
 }
 
-// The highest resolution for forms of CULLIDE, for FAR at other radii than the budget's, and for
-// counts of pairs at risk. Such runs have no guarantee, so they skip no view and take up to five
-// times as long.
+// The highest resolution for forms of CULLIDE, for FAR at the published radius, and for counts of
+// pairs at risk. These runs have no guarantee, so they skip no view and take up to five times as
+// long as runs with a guarantee.
 constexpr int kMostOfForms = 1024;  // px
 
 // Forms of CULLIDE: the published form, forms with one change, and forms with several changes. A
@@ -91,7 +91,7 @@ void add_forms(const ErrorScene& scene, std::vector<Point>& out) {
 std::vector<Point> accuracy_grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const ErrorScene& scene : accuracy_scenes(choice.quick)) {
-    // The quick grid limits S-CULLIDE to 1024 px, since S-CULLIDE takes a step per triangle.
+    // S-CULLIDE is limited to 1024 px in the quick grid, since each triangle counts as an object.
     const int most = scene.again || (scene.self && choice.quick) ? 1024 : 4096;
     const NamedScene named{scene.name};
     for (int resolution = 64; resolution <= most; resolution *= 2) {
@@ -125,8 +125,8 @@ std::vector<ErrorScene> timed_scenes(bool quick) {
                    {"needles:100", "random-soup", "field"}, quick);
 }
 
-// The first three libraries find candidates, and exact predicates decide them. FCL and ODE decide
-// pairs with their own triangle tests.
+// The first three libraries only find candidates; exact predicates decide these pairs. FCL and ODE
+// decide pairs with their own triangle tests.
 constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
                                   "fcl-double", "fcl-float", "ode-trimesh"};
 
@@ -138,8 +138,8 @@ void add_drawn(std::vector<Point>& out, const ErrorScene& scene, int resolution,
   const NamedScene named{scene.name};
   const auto add = [&](RunPoint point) { out.push_back(repeated(std::move(point), repeat)); };
   if (scene.self) {
-    // S-CULLIDE takes a step per triangle. At 2048 px it would take as long as all other points
-    // together.
+    // S-CULLIDE treats each triangle as an object. At 2048 px, S-CULLIDE would take as long as all
+    // other points together.
     if (resolution > 1024) return;
     for (const CullideForm& form : kForms) add(cullide_point(named, s_cullide, resolution, form));
     return;
@@ -174,13 +174,13 @@ std::vector<Point> timed_grid(const GridChoice& choice) {
 PointResult measure_timed(const Point& point, MeasurementContext& lab) {
   if (const auto* run = std::get_if<RunPoint>(&point)) return measure_run(*run, lab);
   PointResult out = measure_peer(std::get<PeerPoint>(point), lab, usable_cores());
-  // Keeps only the time of the whole call; not every library reports the times of its parts.
+  // Keeps only the time of the whole call, since some libraries do not report the other times.
   out.times.cull.reset();
   out.times.exact.reset();
   return out;
 }
 
-// The scenes are two scans and a crowd of randomly drawn objects.
+// The full grid has a scene of two scans, and a scene of many randomly placed objects.
 std::vector<Point> headline_grid(const GridChoice& choice) {
   constexpr int kResolution = 512;  // px
   std::vector<Point> out;
@@ -217,7 +217,7 @@ void add_against_itself(std::vector<Point>& out, const PointScene& scene, int re
 }
 
 // The values of a family range from harmless to extreme. There are more values near the value at
-// which CULLIDE begins to fail. "offset" and "scale" also have more where floats begin to fail.
+// which CULLIDE begins to fail, and in "offset" and "scale" also where floats begin to fail.
 void add_contacts(std::vector<Point>& out, bool quick) {
   struct Family {
     const char* name;
@@ -299,7 +299,7 @@ std::vector<Point> cloth_grid(const GridChoice& choice) {
     for (long frame = 0; frame < frames; ++frame) {
       const MotionFrame scene{name, frame, frames};
       out.emplace_back(plain_point(scene, boxes));
-      if (frame % 10 == 0)  // far would take too long on every frame
+      if (frame % 10 == 0)  // FAR would take too long on every frame
         out.emplace_back(far_point(scene, "obb", kBudgetRadius, kClothResolution));
     }
   }

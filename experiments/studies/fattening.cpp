@@ -1,5 +1,5 @@
 // Studies of the proxies that are drawn in place of triangles. "offsets" compares three ways to
-// bound what a triangle may touch in a pixel; the CPU counts the pixel centres that proxies cover.
+// bound a fattened triangle in a pixel; the CPU counts the pixel centres that proxies cover.
 // "precision" tests lemmas 1 and 2 (docs/reliability.md) for each format of the depth buffer and
 // each source of depth. "radius" tests both lemmas for each radius, and counts the pairs that FAR
 // misses in scenes and on randomly placed patches.
@@ -22,7 +22,7 @@ namespace {
 
 // ---- "offsets" ----
 
-// The interval of x in which a convex quadrilateral covers the row `y`. It is empty if from > to.
+// The interval of x in which a convex quadrilateral covers the row `y`. Empty if from > to.
 struct Span {
   double from = HUGE_VAL, to = -HUGE_VAL;
 };
@@ -47,8 +47,8 @@ Span span_at(const std::array<float, 8>& corners, double y) {
   return out;
 }
 
-// Returns the counts of the elements `from` to `to` - 1. Coordinates of pixel centres are
-// half-integers.
+// Counts the fragments (run_point.h) of the elements `from` to `to` - 1. The coordinates of pixel
+// centres are half-integers.
 Fragments count_in(const Drawables& drawables, const SolidProgram& program, const Window& window,
                    std::size_t from, std::size_t to) {
   Fragments out;
@@ -78,7 +78,7 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 
 using enum Method;
 
-constexpr int kRepeat = 3 * kRounds;  // nine runs, as in the study "scaling"
+constexpr int kRepeat = 3 * kRounds;  // nine runs in all, as in the study "scaling"
 
 std::vector<Point> offsets_grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
@@ -109,9 +109,9 @@ PointResult measure_offsets(const Point& of, MeasurementContext& lab) {
 
 // ---- "precision" and "radius" ----
 
-// The native canvas with a depth buffer of 16-bit fixed point. run() throws. depths() rounds the
-// nearest or farthest depth of each pixel. Rounding is monotone, so the result equals the nearest
-// or farthest of the rounded depths.
+// The native canvas with a depth buffer in 16-bit fixed point. Only depths are offered, so run()
+// throws. depths() rounds the nearest or farthest depth of each pixel. Rounding is monotone, so the
+// result equals the nearest or farthest of the rounded depths.
 class CoarseCanvas final : public Canvas {
  public:
   CoarseCanvas(DepthMode mode, const SolidProgram& solid)
@@ -183,8 +183,8 @@ std::vector<Point> precision_grid(const GridChoice& choice) {
             out.push_back(point);
           }
         };
-        // Violations at 0.9 of the radius show that the points can reveal a radius that is too
-        // small.
+        // Violations at 0.9 times the budget radius show that the points can reveal a radius that
+        // is too small.
         const std::vector<RadiusRule> computed = {parse_radius("0.9"), kPublishedRadius,
                                                   kBudgetRadius};
         for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
@@ -210,22 +210,22 @@ std::vector<RadiusRule> radii(bool quick) {
     std::ranges::sort(factors);
   }
   std::vector<RadiusRule> out;
-  // Each factor is read from its text in a key, so that reading a key gives the same number.
+  // Rounds each factor to its text in a store, so that reading the store gives the same number.
   for (const double factor : factors) out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
   return out;
 }
 
-// Rows for pairs. For each number of subpixel bits there is a row with the published radius and the
-// side at which most pairs are missed. Further rows with 8 bits change one value: no snapping; the
-// budget radius; 0.9 of the budget radius, which shows how many pairs are at risk; other sides; a
+// Placements of pairs. For each number of subpixel bits, one row has the published radius and the
+// side at which most pairs are missed. Other rows differ in one value from the row of 8 bits: no
+// snapping; the budget radius; 0.9 of the budget radius, to count pairs at risk; other sides; a
 // stratum of twice the width, which must give the same rate of misses. The last row draws pairs
-// anywhere. It has 3 bits, since with more bits too few pairs drawn anywhere are missed.
+// anywhere. It has 3 bits, since with more bits too few such pairs are missed.
 constexpr struct {
   const char* radius;
   double side;  // px
   int bits, widening;
-  std::uint64_t thousands;  // thousands of placements
+  std::uint64_t thousands;  // number of placements / 1000
 } kPairs[] = {{"published", 0x1p-4, 4, 1, 250},   {"published", 0x1p-6, 6, 1, 250},
               {"published", 0x1p-8, 8, 1, 1000},  {"published", 0x1p-8, 0, 1, 250},
               {"budget", 0x1p-8, 8, 1, 250},      {"0.9", 0x1p-8, 8, 1, 250},
@@ -238,15 +238,15 @@ struct Size {
   std::uint64_t placements;
 };
 
-constexpr double kSmallest = 0x1p-5;  // px; pairs nearby rarely affect whether a pair is culled
+constexpr double kSmallest = 0x1p-5;  // px; nearby pairs rarely decide whether a pair is culled
 
-// Four series:
+// Returns four series of points:
 // (1) With 8 subpixel bits, triangles of each size at the published radius, 10^6 placements in
 //     all; and triangles up to 4 px at 0.5 to 0.95 times the budget radius.
 // (2) The smallest triangles at the published radius, with other numbers of subpixel bits and at
 //     other resolutions.
-// (3) The smallest triangles at the budget radius, which must miss none.
-// (4) Pairs.
+// (3) The smallest triangles at the budget radius, at which no pair may be missed.
+// (4) Pairs of triangles (kPairs).
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
   constexpr int kUsualBits = 8;
   const int usual_resolution = choice.quick ? 512 : 1024;
@@ -271,7 +271,7 @@ std::vector<PlacementPoint> placements(const GridChoice& choice) {
       };
       for (const Size& size : sizes) add(size, kUsualBits, kPublishedRadius, usual_resolution);
       for (const Size& size : sizes) {
-        if (size.side > 4) continue;  // few larger triangles fit a window
+        if (size.side > 4) continue;  // a window holds few larger triangles
         const Size fewer = {size.side, std::min<std::uint64_t>(size.placements / 4, 5000)};
         for (const char* factor : {"0.5", "0.7", "0.8", "0.9", "0.95"})
           add(fewer, kUsualBits, parse_radius(factor), usual_resolution);
@@ -387,7 +387,7 @@ PointResult measure_lemma(const LemmaPoint& point, MeasurementContext& lab) {
   const bool bits24 = point.depth_format == DepthFormat::fixed24;
   PointResult out;
   LemmaCounts counts;
-  // This is the rule that guaranteed() (method/run.h) has for FAR.
+  // guaranteed() (method/run.h) applies the same rule to FAR.
   counts.promises = !fixed && !point.radius.published && point.radius.factor >= 1;
   std::unique_ptr<WorstCanvas> worst;
   std::unique_ptr<CoarseCanvas> coarse;

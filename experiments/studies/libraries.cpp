@@ -31,12 +31,12 @@ using Json = nlohmann::json;
 /// Contestants that one program implements and that answer the same questions.
 struct KnownContestants {
   std::vector<std::string> names;
-  std::string program;  // the program is farcull_contestant_PROGRAM
+  std::string program;  // the executable's name is farcull_contestant_ and this text
   std::string package;  // the package that the program needs; empty: none
   std::string answers;  // the questions that the study asks, such as "pair mesh"
 };
 
-/// Returns all contestants in the order of tables. The order is the same in every build.
+/// Returns all contestants, in the order of the rows of tables. Every build has this order.
 const std::vector<KnownContestants>& known_contestants() {
   const std::string npm = "nodejs, npm, and then packages of npm: experiments/libraries.sh";
   static const std::vector<KnownContestants> all = {
@@ -158,7 +158,7 @@ std::string folder_of(const LibraryPoint& point) {
   return folder;
 }
 
-/// A contestant's library with its version, or the reason why the contestant cannot be asked.
+/// A contestant's command line and library, or the reason why the contestant cannot be asked.
 struct Asked {
   std::string command = {}, library = {}, missing = {};
 };

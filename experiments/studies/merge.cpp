@@ -75,8 +75,8 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// Throws Error if a shard is missing or repeated, or if a point does not have exactly one complete
-// row.
+// Throws Error if a shard is missing or repeated, or if the number of complete rows of a point is
+// not 1.
 void require_whole(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     const Declaration& all = sources.front().studies[i].declaration;
@@ -118,8 +118,8 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
-// Gives all rows of a point the times of its first row. The rows may differ in times, since several
-// studies may have the point, in shards that were timed separately.
+// Gives all rows of a point the times of the point's first row. Without this, times could differ,
+// since several studies may have the point, in shards that were timed separately.
 void share_times(std::vector<Source>& sources) {
   std::map<PointKey, nlohmann::ordered_json> times;
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
@@ -164,7 +164,7 @@ void require_same_versions(const std::string& path, const StoredStudy& stored, c
     if (!now.empty() && now != at->second)
       reason += fmt::format("{}its rows of {} are of {}, and {} is here now",
                             reason.empty() ? "" : "; ", name, at->second, now);
-    then.erase(at);  // each contestant is checked once
+    then.erase(at);  // each contestant is checked only once
   }
   if (!reason.empty()) throw Error(path, reason, "start anew in another folder (--out)");
 }

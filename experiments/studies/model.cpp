@@ -14,12 +14,12 @@ namespace farcull {
 namespace {
 
 constexpr int kPositions = 4;
-constexpr int kMostFarResolution = 256;  // px; with more, FAR takes minutes and misses little
+constexpr int kMostFarResolution = 256;  // px; above, FAR takes minutes and misses few pairs
 
-// Moves the pixel grid of each view by up to a pixel along both axes. Windows are centred on the
-// places where objects may meet, so the function adds such a place: two objects, each a tiny
-// triangle, whose boxes overlap. The new place lies up to two pixels beyond the lower corner of all
-// other places.
+// Returns the scene with two more objects, which move the pixel grid of each view by up to a pixel
+// along both axes. Each new object is a tiny triangle. Windows are centred on the places where
+// objects may meet, that is, where boxes of objects overlap. The boxes of the new objects overlap
+// at most two pixels beyond the lower corner of all other such places.
 Scene with_moved_grid(const Scene& scene, const Regions& regions, int resolution,
                       shapes::Random& random) {
   Box all = Box::empty();

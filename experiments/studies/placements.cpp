@@ -1,6 +1,6 @@
 // Places patches of triangles. A patch grows from a random triangle over shared vertices. Each
-// placement has a cell. Cell (i, j) of n x n cells is at (i, j, i + j modulo n), so no two cells
-// overlap in any of the three axis views.
+// placement is two patches in one cell. Cell (i, j) of n x n cells is at (i, j, i + j modulo n), so
+// no two cells overlap in a view along x, y or z.
 #include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ namespace {
 using shapes::Corners;
 using shapes::Random;
 
-/// The native canvas, with the corners of proxies first rounded to multiples of 2^-bits px. A
-/// device may snap corners so (assumption A2, docs/reliability.md).
+/// A native canvas that first rounds the corners of proxies to multiples of 2^-bits px. A GL device
+/// may snap corners in this way (assumption A2, docs/reliability.md).
 class SnappingCanvas final : public Canvas {
  public:
   SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
@@ -68,8 +68,8 @@ double longest(const Corners& c) {
   return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
 }
 
-// Centres a patch at the origin. Scales it so that its triangles' longest sides have the mean
-// `side`.
+// Centres a patch at the origin. Scales the patch so that the longest sides of its triangles have
+// the mean length `side`.
 void fit(std::vector<Corners>& patch, double side) {
   Vec3 middle = Vec3::Zero();
   double sum = 0;
@@ -94,10 +94,10 @@ void turn(std::vector<Corners>& patch, Random& random) {
   each_point(patch, [&](Vec3& p) { p = by * p; });
 }
 
-// Cuts a patch of `count` triangles from an object: a random triangle and the triangles nearest to
-// it over shared vertices. If these are too few, adds random triangles beside the first one (a soup
-// shares no vertices). The patch is scaled to `side` and turned at random. around: for each vertex,
-// the object's triangles at this vertex.
+// Cuts a patch of `count` triangles from an object: a random triangle and its nearest neighbours
+// over shared vertices. If the neighbours are too few, as in a soup of triangles, adds random
+// triangles beside the first triangle. Scales the patch to `side` and turns it at random. around:
+// for each vertex, the object's triangles at this vertex.
 std::vector<Corners> cut(const Scene& scene, const Object& object,
                          const std::vector<std::vector<std::uint32_t>>& around, Random& random,
                          std::uint32_t count, double side) {
@@ -141,8 +141,8 @@ void shift(std::vector<Corners>& patch, const Vec3& by) {
   each_point(patch, [&](Vec3& p) { p += by; });
 }
 
-// Moves the second patch so that a random point of the second patch is at a random point of the
-// first patch. Returns the common point.
+// Moves the second patch, so that a random point of the second patch coincides with a random point
+// of the first patch. Returns the common point.
 Vec3 cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
   const Vec3 to = inner(one[random.below(one.size())], random);
   shift(other, to - inner(other[random.below(other.size())], random));
@@ -223,12 +223,12 @@ PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
 }
 
 // Derives the limits of CornerStratum, in pixels. Corners are snapped to multiples of g.
-// 1. Let n be the unit normal of an edge of a triangle's rectangle, at the angle t from a diagonal
-//    of the pixels. Snapping moves the edge inward by at most
+// 1. A triangle is drawn as a rectangle. Let n be the unit normal of an edge of the rectangle, at
+//    the angle t from a diagonal of the pixels. Snapping moves the edge inward by at most
 //    g/2 (|n.x| + |n.y|) = g/sqrt(2) cos(t).
 // 2. Let q be the contact relative to the nearest corner of the pixels. The rectangle reaches at
-//    least sqrt(1/2) beyond the contact. So the rectangle loses the pixel centre on this diagonal
-//    only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
+//    least sqrt(1/2) beyond the contact. So the rectangle loses (no longer covers) the pixel
+//    centre on this diagonal only if n.q < sqrt(1/2) ((1 + g) cos(t) - 1).
 // 3. A pair is missed only if each of the four centres around the corner is lost by one of the two
 //    triangles. Suppose that each triangle loses two opposite centres. Then step 2 holds for n and
 //    -n, so cos(t) > 1 / (1 + g), and q is inside a strip for each triangle. If q is in both
@@ -269,7 +269,7 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
                diagonal = static_cast<double>((k / n + k % n) % n);
     std::vector<Corners> a, b;
-    do {  // repeats while a patch leaves its cell, where it could meet other patches
+    do {  // repeats while a patch leaves the cell and could meet patches of other cells
       a = cut(from_, from_.objects[0], around_[0], random, count, point.side);
       b = cut(from_, from_.objects[1], around_[1], random, count, point.side);
       if (point.grazing) {
@@ -298,8 +298,8 @@ PlacedPatches PatchSource::place(const PlacementPoint& point, const CornerStratu
     ++out.placements;
   }
   if (point.pairs) {
-    // At each end of the window, a point of either object makes the window range from -half to
-    // half. So corners of pixels are at whole numbers.
+    // Gives both objects a point at each end of the window, so that the window ranges from -half to
+    // half. Then corners of pixels are at whole numbers.
     for (const double end : {-half, half}) {
       for (auto* list : {&one, &other})
         list->push_back({Vec3::Constant(end), Vec3::Constant(end), Vec3::Constant(end)});
@@ -337,7 +337,7 @@ double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 
 }
 
 std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) {
-  // Sides are multiples of 2^-10 px.
+  // PlacementPoint::side is a multiple of 2^-10 px.
   const auto side = static_cast<std::uint64_t>(std::llrint(std::ldexp(point.side, 10)));
   std::vector<std::uint32_t> words;
   for (const std::uint64_t number :
@@ -388,7 +388,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     const auto& work = std::get<DrawPlan>(planned.work);
     CullSettings settings = work.settings;
     std::vector<std::uint8_t> kept(scene.triangles.size(), 0);
-    double pixel = 1;  // size, in units of the scene
+    double pixel = 1;  // size of a pixel, in units of the scene
     if (!work.fatteners.empty()) {
       settings.fattener = work.fatteners.front();
       SnappingCanvas canvas(settings.fattener, point.subpixel_bits, lab.session().threads());
@@ -405,7 +405,7 @@ PointResult measure_placements(const PlacementPoint& point, MeasurementContext& 
     std::vector<std::uint8_t> collides(placed.placements), misses(placed.placements);
     for (const TrianglePair& pair : lab.truth().pairs) {
       const std::uint64_t at = pair.a / (point.pairs ? 1 : kPatchTriangles);
-      if (at >= placed.placements) continue;  // the pair is of points at the ends of the window
+      if (at >= placed.placements) continue;  // a pair of the points at the ends of the window
       collides[at] = 1;
       ++counts.colliding;
       if (kept[pair.a] && kept[pair.b]) continue;

@@ -1,4 +1,4 @@
-// Converts points to the columns of a store, and to text.
+// Converts points to the columns of a store and to text.
 #include "experiments/studies/point.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// The points of studies: several kinds with their own fields, and the columns that identify a point
-// in a store.
+// Defines the points of studies. Each kind of point has its own structure. PointKey has the columns
+// that identify a point in a store.
 #pragma once
 
 #include <compare>
@@ -16,7 +16,7 @@
 
 namespace farcull {
 
-/// A scene, named as on the command line.
+/// A scene, given by its name on the command line.
 struct NamedScene {
   std::string name;
 };
@@ -24,14 +24,14 @@ struct NamedScene {
 struct MotionFrame {
   std::string name;
   long frame = 0;
-  long frames = 1;  // of the whole motion
+  long frames = 1;  // number of frames of the whole motion
 };
 /// A frame of the scene "cloth", in which the cloth is not tested against itself.
 struct ClothApart {
   std::string name;
   long frame = 0;
 };
-/// Segments that cross next to corners of pixels (pixel_corners() in run_point.cpp).
+/// Segments that cross near corners of pixels (pixel_corners() in run_point.cpp).
 struct PixelCorners {};
 
 /// Clusters of small objects in a large cube, drawn at random (clusters() in run_point.cpp).
@@ -44,13 +44,13 @@ struct ClusteredScene {
 struct ContactCells {
   std::string family;  // slivers, mixed, edge-on, overlap, gap, stack, offset or scale
   int side = 24;       // cells in a row; there are side * side cells
-  std::string value;   // the number, from harmless to extreme, such as 1e6
+  std::string value;   // the number as text, from harmless to extreme, such as "1e6"
 };
 
 using PointScene =
     std::variant<NamedScene, MotionFrame, ClothApart, PixelCorners, ClusteredScene, ContactCells>;
 
-/// The form of a method that draws. The fields are as in RunOptions.
+/// The form of a method that draws. RunOptions explains the fields.
 struct CullideForm {
   int rounds = 0;
   ClearRule clear = ClearRule::any;
@@ -59,7 +59,7 @@ struct CullideForm {
   std::string views = {};
 };
 
-/// A method of `farcull run`. If a field is empty, the method chooses its value.
+/// A run of a method of `farcull run` on a scene. The method chooses the value of an empty field.
 struct RunPoint {
   PointScene scene;
   Method method = Method::far;
@@ -67,9 +67,9 @@ struct RunPoint {
   std::optional<RadiusRule> radius = {};         // only for far
   std::optional<DepthMode> depth_mode = {};      // how a fragment gets its depth
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer stores a depth
-  int resolution = 0;  // px; 0: the method has none, or mean_pixels chooses it
-  /// If not 0: the lowest resolution is chosen at which triangles that may collide cover this many
-  /// pixels on average (size_for() in run_point.cpp).
+  int resolution = 0;  // px; 0: the method has no resolution, or mean_pixels chooses
+  /// If above 0, the run has the lowest resolution at which triangles that may collide cover this
+  /// many pixels on average (size_for() in run_point.cpp).
   double mean_pixels = 0;
   CullideForm form = {};
   int repeat = 1;  // number of timed runs (runs_of()); 1 for a MotionFrame
@@ -85,7 +85,7 @@ struct PeerPoint {
 /// The lemma experiment (lemma/lemma.h) with one generator at one radius.
 struct LemmaPoint {
   std::string generator;     // one of lemma_generators()
-  std::uint64_t points = 0;  // at least this many points are tested
+  std::uint64_t points = 0;  // minimum number of tested points
   double depth = 256;        // depth of the window, px
   bool worst = false;  // true: on WorstCanvas (verify/worst_canvas.h), with corners displaced by
                        // the largest error of double arithmetic; false: on the device of the run
@@ -120,18 +120,18 @@ struct PlacementPoint {
 struct LibraryPoint {
   std::string contestant = {};
   std::string question = "pair";  // as in docs/ask.md
-  bool small = false;             // true: of the small suite; false: of the full suite
-  std::uint64_t seed = 1;         // of the suite
+  bool small = false;             // true: the small suite; false: the full suite
+  std::uint64_t seed = 1;         // seed of the suite
   std::string suite = {};         // folder of the suite; empty: a suite is generated
-  std::string suite_name = {};    // the beginning of the checksum of the suite in a folder
+  std::string suite_name = {};    // for a suite in a folder: the first digits of its checksum
 };
 
 /// A method that finds potential neighbours (measure/neighbour_sets.h).
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
-  int resolution = 0;   // of the diagram, in cells; 0: the method has no diagram
-  double widening = 1;  // factor of the reliable diagram; below 1 there is no guarantee
+  int resolution = 0;   // cells of the diagram along the scene's longest side; 0: no diagram
+  double widening = 1;  // factor of the reliable diagram; below 1: no guarantee
   int repeat = 1;       // number of timed runs (runs_of())
 };
 
@@ -153,7 +153,7 @@ inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
   return std::pair(a.published, a.factor) <=> std::pair(b.published, b.factor);
 }
 
-/// The columns that identify a point in a store. A column that does not apply is empty, 0 or -1; no
+/// The columns that identify a point in a store. A column that does not apply is empty, 0 or -1. No
 /// two points of a grid have the same key.
 struct PointKey {
   std::string scene = {};  // as on the command line, or as key_of() writes it
@@ -186,7 +186,7 @@ std::string column_text(const std::optional<DepthMode>& mode);
 template <class T>
 std::optional<T> column_of(const std::string& text);
 
-/// The number of rounds in which a point is timed (run_studies.h).
+/// A timed point is measured in this many rounds (run_studies.h).
 inline constexpr int kRounds = 3;
 /// Returns the number of runs of the point in all rounds together. A point with at most 1 run is
 /// not timed; it is run once, for its counts.
@@ -211,9 +211,9 @@ struct LemmaScene {
 /// Reads what LemmaScene::name() wrote. Throws std::logic_error for any other text.
 LemmaScene parse_lemma_scene(const std::string& text);
 
-// Points that several studies use. They are not timed unless `repeat` is set.
+// The next functions return points for several studies. A point is timed only if `repeat` is set.
 
-/// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact.
+/// Returns a point of FAR with fragment depth in 32-bit float. offset: obb or exact.
 inline RunPoint far_point(PointScene scene, const std::string& offset, const RadiusRule& radius,
                           int resolution) {
   return {.scene = std::move(scene),
@@ -225,7 +225,7 @@ inline RunPoint far_point(PointScene scene, const std::string& offset, const Rad
           .resolution = resolution};
 }
 
-/// A method of the CULLIDE family at a resolution, with the depth of the rasterizer in 32 bits.
+/// Returns a point of CULLIDE or a variant, with the rasterizer's depth in 32-bit float.
 inline RunPoint cullide_point(PointScene scene, Method method, int resolution,
                               const CullideForm& form = {}) {
   return {.scene = std::move(scene),
@@ -238,7 +238,7 @@ inline RunPoint cullide_point(PointScene scene, Method method, int resolution,
 
 /// CULLIDE as published: one round.
 inline const CullideForm kPublishedForm = {.rounds = 1};
-/// The form of CULLIDE that misses least.
+/// The form of CULLIDE that misses the fewest pairs.
 inline const CullideForm kStrictForm = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
 
 /// Returns the names of a randomly drawn scene with the first `count` of five seeds: the scene's
@@ -249,7 +249,7 @@ inline std::vector<std::string> drawn_scenes(const std::string& name, int count 
   return out;
 }
 
-/// A method that draws nothing: boxes, i-collide, exact.
+/// Returns a point of a method that draws nothing: boxes, i-collide or exact.
 inline RunPoint plain_point(PointScene scene, Method method) {
   return {.scene = std::move(scene), .method = method};
 }
@@ -257,7 +257,7 @@ inline RunPoint plain_point(PointScene scene, Method method) {
 inline constexpr RadiusRule kBudgetRadius = {};
 inline constexpr RadiusRule kPublishedRadius = {.published = true};
 
-/// Returns the point, timed with `repeat` runs. Precondition: `repeat` is a multiple of kRounds.
+/// Returns the point with `repeat` timed runs. Precondition: `repeat` is a multiple of kRounds.
 template <class OfPoint>
 OfPoint repeated(OfPoint point, int repeat) {
   point.repeat = repeat;

@@ -1,6 +1,6 @@
-// The study "proximity" measures the size of potential neighbour sets, the nearest neighbours that
-// a grid loses, and the errors and times of libraries' distances. The exact answers of all scenes
-// are cached, since many points and several rounds use the same scene.
+// The study "proximity" measures the size of potential neighbour sets, the number of nearest
+// neighbours that a grid loses, and the errors and times of distances by libraries. The exact
+// answers of all scenes are cached, since many points and several rounds use the same scene.
 //
 // Sud, Govindaraju, Gayle, Kabul and Manocha, Fast Proximity Computation Among Deformable Models
 // using Discrete Voronoi Diagrams, SIGGRAPH 2006.
@@ -20,11 +20,11 @@ namespace {
 
 constexpr unsigned kThreads = 1;
 
-// A scene without self-distances, and its exact answers.
+// A scene and its exact answers. Distances within an object are not measured.
 struct Exact {
   Scene scene;
   std::string hash;
-  std::vector<PeerDistance> distances;  // the answers to the task
+  std::vector<PeerDistance> distances;  // the exact answers to the task
   std::uint64_t accounted = 0;          // pairs of triangles that the accounting decided
   std::vector<NearestObjects> nearest;  // only for the task `nearest`
 };
@@ -74,14 +74,14 @@ const Exact& exact_of(const PointScene& wanted, DistanceTask task, const std::st
 
 using enum NeighbourMethod;
 
-constexpr int kCellsInMotion = 256;    // cells, for scenes that move
-constexpr int kCountResolution = 128;  // cells, for times against the number of objects
+constexpr int kCellsInMotion = 256;    // resolution in cells, for scenes that move
+constexpr int kCountResolution = 128;  // resolution in cells, for times against object counts
 constexpr int kMostInDiagrams = 400;   // most objects in a scene for which diagrams are computed
-constexpr int kRuns = 3 * kRounds;     // nine runs, as in the study "scaling"
+constexpr int kRuns = 3 * kRounds;     // nine runs in all, as in the study "scaling"
 constexpr int kSeeds = 3;              // seeds of each scene of clusters
 
-// Adds points for both Voronoi diagrams at each resolution, and for the methods without cells.
-// unwidened: true to add the reliable diagram with widening 0, which may lose objects.
+// Adds points for both kinds of Voronoi diagram at each resolution, and for the methods without
+// cells. unwidened: true to add the reliable diagram with widening 0, which may lose objects.
 void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
     out.emplace_back(NeighbourPoint{scene, method});
@@ -133,8 +133,8 @@ void add_motion(bool quick, std::vector<Point>& out) {
   static const std::vector<std::string> full = {"crowd:100", "cylinders:30", "field:4000",
                                                 "tree-leaves:60"};
   static const std::vector<std::string> few = {"crowd:30", "cylinders:8"};
-  // There are at least six frames. The range of fewer frames contains the median with less than
-  // 95 % probability.
+  // With fewer than six frames, the range of the measured values would contain their median with
+  // less than 95 % probability.
   const long frames = quick ? 6 : 12;
   for (const std::string& name : quick ? few : full) {
     for (long frame = 0; frame < frames; ++frame) {
@@ -151,7 +151,7 @@ void add_counts(bool quick, std::vector<Point>& out) {
                            : std::vector{25, 50, 100, 200, 400, 800, 1600, 3200}) {
     const NamedScene scene{fmt::format("crowd:{}", n)};
     for (const NeighbourMethod method : {boxes, trees, voronoi, voronoi_reliable}) {
-      // With more objects, each diagram takes seconds.
+      // For more objects than this, each diagram takes seconds.
       if (has_cells(method) && n > kMostInDiagrams) continue;
       out.emplace_back(NeighbourPoint{.scene = scene,
                                       .method = method,

@@ -55,7 +55,7 @@ Scene pixel_corners() {
       other.push_back({q - down, q + down, q + down});
     }
   }
-  for (const double at : {-1.0, 1.0}) {  // two points that touch and extend the boxes to the window
+  for (const double at : {-1.0, 1.0}) {  // makes both boxes as large as the window
     const Vec3 p(at * kHalf, at * kHalf, 64);
     for (auto* list : {&one, &other}) list->push_back({p, p, p});
   }
@@ -83,7 +83,7 @@ Scene clusters(const ClusteredScene& wanted) {
   for (int cluster = 0; cluster < kClusters; ++cluster) {
     const Vec3 corner = drawn(0, 1 - side);
     for (int object = 0; object < kObjects; ++object) {
-      // An object fills only a part of the cluster, so that most objects do not meet.
+      // An object has a tenth of the cluster's side, so that most objects do not meet.
       const Vec3 at = corner + drawn(0, 0.9 * side);
       std::vector<Corners> triangles(1 + random.below(4));
       for (Corners& triangle : triangles) {
@@ -100,30 +100,30 @@ Scene clusters(const ClusteredScene& wanted) {
 }
 
 // The scene of ContactCells: contacts that depend on a number, which may be harmless or extreme.
-// Cell (i, j) lies at (i, j, i + j modulo side), so that in each of the views x, y and z every cell
-// has pixels of its own. A unit is a pixel, and corners of pixels are at whole numbers in all three
-// views. Every six consecutive cells are
+// Cell (i, j) lies at (i, j, i + j modulo side), so that no two cells share a pixel in the views x,
+// y and z. A unit is a pixel, and corners of pixels are at whole numbers in all three views. Every
+// six consecutive cells are
 // - one cell whose contact is at risk and does not depend on the number. In the view along one
 // axis, the images of its triangles are segments at 45 degrees that cross at the corner of a pixel.
 // Every pixel centre is at least 0.707 px, half a pixel's diagonal, from one of the two segments.
-// So only a ball of at least 0.707 px finds such a contact. The radius of the budget is 0.709 px;
+// So only a ball of at least 0.707 px finds such a contact. The budget radius is 0.709 px;
 // - two cells whose contact depends on the number. The contact lies at most 15/64 px from the
-// centre of a pixel along each axis, so that much smaller balls find it at every value;
-// - three cells whose triangles are far apart, so that there is something to cull.
+// centre of a pixel along each axis, so that much smaller balls find this contact at every value;
+// - three cells whose triangles are far apart, so that methods have triangles to cull.
 
 constexpr double kCell = 20;      // px, side of a cell
-constexpr double kUlp = 0x1p-45;  // px, the last bit of coordinates of 128 to 256
+constexpr double kUlp = 0x1p-45;  // px, a unit in the last place from 128 to 256
 
 // Returns the triangles of a contact at risk, at the origin. Their images in the view z are
-// segments. slope: steepness of their first edges along the depth.
+// segments. slope: scales the change of depth along these segments.
 std::vector<Corners> at_risk(double slope) {
   const Vec3 up(3, 3, 3 * slope), down(3, -3, -1.5 * slope), depth(0, 0, 2.5);
   return {{-up - depth, up - depth, depth}, {depth - down, depth + down, -depth}};
 }
 
-// Returns the triangles of a contact near the origin that depends on the number: one for each
-// object. With harmless values each triangle is about 11 px long. The two triangles cross along a
-// line. Each view has room for a pixel centre on both sides of this line.
+// Returns one triangle for each object. The triangles make a contact near the origin that depends
+// on the number. With harmless values each triangle is about 11 px long. The triangles cross along
+// a line. In each view, there is room for a pixel centre on both sides of this line.
 std::vector<Corners> varying(const std::string& family, double value) {
   const auto sheet = [](const Vec3& along, const Vec3& across, double aspect) {
     const Vec3 u = 2.25 * along, v = 2.5 / aspect * across;
@@ -133,7 +133,7 @@ std::vector<Corners> varying(const std::string& family, double value) {
     return std::vector<Corners>{sheet(Vec3(1, -2, 1), Vec3(1, 0, -1), aspect),
                                 sheet(Vec3(2, -1, 1), Vec3(0, -1, -1), aspect)};
   };
-  // A triangle whose tip goes through the sheet of crossing(1) in the plane x + y + z = 0.
+  // Returns a triangle with this tip. Its other corners are above the plane of crossing(1)[0].
   const auto wedge = [](const Vec3& tip) { return Corners{tip, {7.5, -1.5, 6}, {-1.5, 7.5, 6}}; };
   std::vector<Corners> out = crossing(family == "slivers" ? value : 1);
   if (family == "mixed") {
@@ -154,7 +154,7 @@ std::vector<Corners> varying(const std::string& family, double value) {
   return out;
 }
 
-// Moves two triangles so far apart that a view separates them, even if it draws oriented boxes.
+// Moves two triangles so far apart that their oriented boxes are disjoint in one of the views.
 std::vector<Corners> apart(std::vector<Corners> triangles) {
   triangles.resize(2);
   for (const int o : {0, 1}) {
@@ -216,12 +216,12 @@ PointResult result_of(const Scene& scene, const TruePairs& truth, const Record& 
   return out;
 }
 
-// A point is left out if its mean_pixels requires a higher resolution than this.
+// A point is left out if RunPoint::mean_pixels requires a higher resolution.
 constexpr int kMostSizedResolution = 8192;  // px
 
 // Returns the lowest resolution at which triangles that may collide cover `pixels` pixels on
-// average, over the triangles and the views x, y, z. A triangle covers as many pixels as the area
-// of its image. Returns resolution 0 if the triangles have no area.
+// average, over the triangles and the views x, y, z. The number of pixels is taken as the area of
+// the triangle's image. Returns resolution 0 if the triangles have no area.
 SizeCounts size_for(const Scene& scene, double pixels) {
   constexpr int kSample = 256;  // px; areas grow with the square of the resolution
   const Regions regions = find_regions(scene, {.self = has_self(scene)});
@@ -240,7 +240,7 @@ SizeCounts size_for(const Scene& scene, double pixels) {
     }
   }
   const double mean = area / static_cast<double>(count);
-  if (!(mean > 0)) return {};  // without triangles the mean is NaN
+  if (!(mean > 0)) return {};  // the mean is NaN without triangles
   const double side = std::ceil(kSample * std::sqrt(pixels / mean));
   return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
           .mean_pixels = mean * side * side / kSample / kSample};
@@ -291,7 +291,7 @@ Scene contact_cells(const ContactCells& wanted) {
       }
     }
   }
-  // Small triangles at two corners give all objects the same box, which is as wide as the window.
+  // Small triangles at two corners give all objects the same box, which has the window's size.
   for (std::size_t o = 0; o < objects.size(); ++o) {
     for (const double at : {-kCellsResolution / 2.0, kCellsResolution / 2.0}) {
       Corners& corner = objects[o].emplace_back();
@@ -373,7 +373,7 @@ RunOptions options_of(const RunPoint& point, const MeasurementContext& lab) {
                      .device = lab.device(),
                      .verify = false};
   if (!point.offset.empty()) options.offset = point.offset;
-  // A point without times counts misses, so FAR draws all views, as it does with a smaller ball.
+  // A point without times counts misses. So FAR draws all views, as runs with a smaller ball do.
   options.no_shortcuts = point.repeat == 1 && fattens(point.method) &&
                          !std::holds_alternative<MotionFrame>(point.scene);
   return options;

@@ -17,15 +17,15 @@ namespace farcull {
 const Scene& open_scene(const PointScene& scene, MeasurementContext& lab);
 
 /// Returns the options of a run at the point. The run has no accounting, since measure_run()
-/// compares it with the exact answer.
+/// compares the run's answer with the exact answer.
 RunOptions options_of(const RunPoint& point, const MeasurementContext& lab);
 
-/// Returns a scene of cells, described in run_point.cpp. A cell has a few triangles. In the views
-/// x, y and z at kCellsResolution each cell has pixels of its own. Throws std::logic_error for an
+/// Returns a scene of cells, described in run_point.cpp. A cell has a few triangles. No two cells
+/// share a pixel in the views x, y and z at kCellsResolution. Throws std::logic_error for an
 /// unknown family.
 constexpr int kCellsResolution = 512;  // px
 Scene contact_cells(const ContactCells& scene);
-/// True if a colliding pair of this scene is in a cell whose contact depends on
+/// True if a colliding pair of contact_cells(scene) is in a cell whose contact depends on
 /// ContactCells::value.
 bool varies(const TrianglePair& pair, const ContactCells& scene);
 
@@ -36,20 +36,20 @@ std::pair<std::uint64_t, std::uint64_t> mechanism_of(const Scene& scene, const R
 std::string answered(const Record& record);
 
 /// Opens the scene and runs the point's method on it once. For a MotionFrame, I-COLLIDE starts with
-/// the sorted lists of the previous frame. Any other run does not depend on earlier runs in `lab`.
-/// A second run of a MotionFrame would start with the lists of the same frame, so `repeat` must be
-/// 1 for a MotionFrame (else std::logic_error). Throws Error as run() does. The counts are
+/// the sorted lists of the previous frame. Other runs do not depend on earlier runs in `lab`. A
+/// second run of a MotionFrame would start with the lists of the same frame, so `repeat` must be 1
+/// for a MotionFrame. Throws std::logic_error otherwise, and Error as run() does. The counts are
 /// RunCounts without `fragments`. record: receives the record of the run; may be null.
 PointResult measure_run(const RunPoint& point, MeasurementContext& lab, Record* record = nullptr);
 inline PointResult measure_run_point(const Point& point, MeasurementContext& lab) {
   return measure_run(std::get<RunPoint>(point), lab);
 }
 
-/// Runs FAR at the point twice, with 0.9 times its radius and without a ball. Returns how many
-/// pairs each run misses: RunCounts::at_risk and RunCounts::at_risk_bare.
+/// Runs FAR at the point twice: with 0.9 times the budget radius, and without a ball. Returns how
+/// many pairs each run misses: RunCounts::at_risk and RunCounts::at_risk_bare.
 std::pair<std::uint64_t, std::uint64_t> pairs_at_risk(const RunPoint& point,
                                                       MeasurementContext& lab);
-/// Calls measure_run(). For FAR at a radius with a guarantee, adds the counts of pairs_at_risk().
+/// Calls measure_run(). If FAR has a guarantee at this radius, adds the counts of pairs_at_risk().
 PointResult measure_with_risk(const RunPoint& point, MeasurementContext& lab,
                               Record* record = nullptr);
 
@@ -64,8 +64,8 @@ PointResult measure_peer(const PeerPoint& point, MeasurementContext& lab, unsign
 /// lacks the library, or if the point is no PeerPoint.
 std::string library_of_peer(const Point& point);
 
-/// Throws Error if two runs of a point differ in anything but times. The error names each
-/// difference with both values.
+/// Throws Error if two runs of a point differ in more than times. The error names each difference
+/// with both values.
 void require_same(const PointKey& point, const PointResult& first, const PointResult& other);
 
 /// Runs the lemma experiment of the point. The point is left out if the window is larger than the
@@ -85,7 +85,7 @@ PointResult measure_neighbours(const NeighbourPoint& point, MeasurementContext& 
 /// DistanceCounts. The point is left out if this build lacks the library or the library refuses the
 /// scene. Throws std::logic_error if there is no such contestant.
 PointResult measure_distances(const DistancePoint& point, MeasurementContext& lab);
-/// Uses `contestant` in place of the contestant that the point names.
+/// Does the same with `contestant` in place of the contestant that the point names.
 PointResult measure_distances(const DistancePoint& point, const DistancePeer& contestant,
                               MeasurementContext& lab);
 
@@ -94,7 +94,7 @@ std::vector<DistancePeer> distance_contestants();
 /// Returns the library of a DistancePoint with its version (Study::library).
 std::string library_of_distances(const Point& point);
 
-/// Fragments of a run of FAR whose views draw each triangle that may collide exactly once.
+/// Fragments of FAR if each view draws every triangle that may collide exactly once.
 struct Fragments {
   std::uint64_t covered = 0;  // pixel centres in the closed proxies; each runs the fragment program
   std::uint64_t solid = 0;    // covered pixel centres whose view ray meets the solid
@@ -108,10 +108,10 @@ struct Fragments {
 /// fragment depth on this scene.
 Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
-// The next functions measure how often FAR misses a pair at a radius, on many pairs of small
-// patches that meet at random places. A patch is a few neighbouring triangles of a built-in scene,
-// scaled and turned at random. A scene holds thousands of placements. In each of the views x, y and
-// z every placement has pixels of its own, so that one run of FAR decides them all.
+// The next functions measure how often FAR misses a pair at a radius. A placement is two small
+// patches that meet at a random place. A patch is a few neighbouring triangles of a built-in scene,
+// scaled, and turned at random. A scene holds thousands of placements. No two placements share a
+// pixel in the views x, y and z, so one run of FAR decides all placements.
 
 constexpr std::uint32_t kPatchTriangles = 8;
 
@@ -124,8 +124,8 @@ struct PlacedPatches {
   std::uint64_t placements = 0;
 };
 
-/// Returns a stratum of `widening` times the usual width. subpixel_bits: 0 if only floats round the
-/// corners.
+/// Returns a stratum of `widening` times the usual width. subpixel_bits: 0 if corners are rounded
+/// to floats, but not snapped.
 CornerStratum corner_stratum(int widening, int subpixel_bits, int resolution);
 
 /// Cuts patches from the first two objects of a scene.
@@ -148,7 +148,7 @@ class PatchSource {
 /// resolution or in the kind of contact have different seeds, so that their rows can be added up.
 std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window);
 
-/// Returns the length of the segment in which two triangles meet, in double; 0 if there is none.
+/// Returns the length, in double, of the segment in which two triangles meet; 0 without a segment.
 double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// Runs FAR on one scene after the other until all placements of the point are done. FAR uses

@@ -1,4 +1,4 @@
-// Measures in rounds the points that the store lacks, and prints the summary.
+// Measures the points that the store lacks, in rounds. Formats the summary and lists all studies.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -26,10 +26,10 @@ struct Task {
   std::vector<Point> points;
   std::vector<PointKey> keys;
   std::vector<std::size_t> open;            // positions of the points to measure
-  std::map<std::size_t, Measurement> rows;  // the rows that open points have so far
-  double seconds = 0;                       // time of this run
-  std::size_t measured = 0;                 // points
-  std::size_t visits = 0, visits_left = 0;  // a visit: an untimed point, or a round of a timed one
+  std::map<std::size_t, Measurement> rows;  // the present rows of open points
+  double seconds = 0;                       // time that this run spent on the task
+  std::size_t measured = 0;                 // points finished in this run
+  std::size_t visits = 0, visits_left = 0;  // visit: an untimed point or one round of a timed point
 };
 
 void make_folder(const std::string& folder) {
@@ -51,8 +51,8 @@ bool is_alike(const Provenance& a, const Provenance& b) {
          a.cpu_features == b.cpu_features;
 }
 
-// Throws Error if earlier rows are of another program or machine, since a table would not tell such
-// rows apart.
+// Throws Error if earlier rows are of another program or machine, since a table would mix them with
+// new rows.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
@@ -159,7 +159,7 @@ std::optional<double> remaining(const std::vector<Task>& tasks) {
   return out;
 }
 
-// Adds a round and computes the total again.
+// Adds a round to the times, and recomputes the total over all rounds that are not void.
 void add_round(Json& times, const std::vector<double>& ms, const std::optional<Load>& load,
                bool is_void) {
   Json rounds = times.value("rounds", Json::array());
@@ -217,7 +217,7 @@ class Runner {
   // The results of the runs of a point in one round.
   struct Runs {
     At at;
-    std::optional<PointResult> first = {};  // empty: no run has finished
+    std::optional<PointResult> first = {};  // the first result; empty: no run has finished
     std::vector<double> ms = {};
     bool failed = false;
   };
@@ -250,8 +250,8 @@ class Runner {
       }
     }
   }
-  // Keeps a row for other studies. Does not keep rows of frames of a motion, since these rows may
-  // depend on earlier frames.
+  // Keeps a row for other studies. Ignores rows of frames of a motion, since these rows may depend
+  // on earlier frames.
   void know(const PointKey& key, const Measurement& row, bool plain) {
     if (key.frame >= 0 || !row.left_out.empty()) return;
     if (rounds_in(row).value_or(0) > 0) {
@@ -294,8 +294,8 @@ class Runner {
     }
   }
 
-  // Returns the point's row if there is one. Otherwise returns a row with the counts of the point
-  // in another study, or measures the counts now. Returns nothing if this fails.
+  // Returns the point's row if the point has a row. Otherwise returns a row with the counts of the
+  // point in another study, or measures the counts now. Returns nothing if measuring fails.
   std::optional<Measurement> row_without_times(const At& at) {
     if (const auto own = at.task->rows.find(at.position); own != at.task->rows.end())
       return own->second;
@@ -314,8 +314,8 @@ class Runner {
     passed(*at.task, watch, before - (row ? visits_left(*at.task, at.position) : 0));
   }
 
-  // Measures one round of a scene's points; their runs take turns. Repeats the round if the machine
-  // was busy.
+  // Measures one round of a scene's points. The runs of the points take turns. Repeats the round if
+  // the machine was busy.
   void time_block(const std::vector<At>& block, int round) {
     constexpr int kTries = 3;
     const Stopwatch watch;
@@ -399,9 +399,9 @@ class Runner {
     if (progress_) progress_(now_);
   }
 
-  // Measures a point. Returns nothing if measuring failed or the result differs from an earlier
-  // run. Then the failure is noted, the point is not measured again, and the next point gets a new
-  // device.
+  // Measures a point. Returns nothing if measuring fails or the result differs from an earlier run.
+  // In this case the failure is noted, the point is not measured again, and the next point gets a
+  // new device.
   std::optional<PointResult> measure(const At& at) {
     std::string why = lacking(at.key());
     if (!why.empty()) return PointResult{.device = "none", .left_out = std::move(why)};
@@ -448,10 +448,10 @@ class Runner {
   std::optional<MeasurementContext> lab_;
   std::int64_t run_ = 0;
   Interruptible* interruptible_ = nullptr;
-  std::set<Place> closed_;                   // points that are finished, or that failed
+  std::set<Place> closed_;                   // points that are finished or have failed
   std::map<Place, PointResult> first_;       // the first run of each timed point
-  std::map<PointKey, Measurement> timed_;    // the times that some study has of a point
-  std::map<PointKey, Measurement> counted_;  // the counts that a plain study has of a point
+  std::map<PointKey, Measurement> timed_;    // times of a point in any study
+  std::map<PointKey, Measurement> counted_;  // counts of a point in a plain study
 };
 
 }  // namespace

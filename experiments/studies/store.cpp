@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Adds a count. A value with fields is replaced by its fields. An empty optional is left out.
+// Adds a count to `out`. Adds the fields of a value with fields, and nothing for an empty optional.
 template <class Value>
 void add(NamedCounts& out, std::string_view name, const Value& value) {
   if constexpr (requires { value.has_value(); }) {
@@ -34,8 +34,8 @@ void add(NamedCounts& out, std::string_view name, const Value& value) {
   }
 }
 
-// The tables of a file of version kStoreVersion. The columns for Provenance and PointKey are in the
-// order of the structures' fields. `results` is a view for queries in SQL.
+// The tables of a store of version kStoreVersion. The columns for Provenance and PointKey have the
+// order of the fields of these structures. `results` is a view for queries in SQL.
 constexpr const char* kSchema = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
@@ -114,12 +114,12 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Replaces invalid UTF-8, which the text of a driver may have.
+// Returns the JSON as text. Replaces invalid UTF-8, which names of GL drivers may contain.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Binds the fields of a row, in the order of its table's columns, starting at parameter `at`.
+// Binds the fields of a row to the statement's parameters, in order, starting at parameter `at`.
 template <class Fields>
 void bind_fields(SQLite::Statement& statement, int at, const Fields& row) {
   row.fields([&](std::string_view name, const auto& value) {
@@ -247,10 +247,10 @@ Store::Store(const std::string& path, Access access) {
                 "measure first: farcull experiment all --quick");
   }
   guarded(path, [&] {
-    // The file is opened for writing even if it is only read, since SQLite first rolls back the
-    // unfinished work of a killed program.
+    // Opens the file for writing even if Access is `read`, since SQLite first rolls back unfinished
+    // transactions of a killed program.
     const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
-    // SQLite interprets "file:..." as a URI.
+    // SQLite would interpret a name that begins with "file:" as a URI.
     const std::string name = path.starts_with('/') ? path : "./" + path;
     state_ = std::make_unique<State>(State{path, SQLite::Database(name, flags)});
     SQLite::Database& database = state_->database;
@@ -391,8 +391,8 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction. It replaces a row that says why nothing was measured, lacks
-    // rounds or has void rounds.
+    // One statement is one transaction. This statement replaces a row that says why nothing was
+    // measured, lacks rounds or has void rounds.
     static const std::string text = fmt::format(
         "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "
         "SET run = excluded.run, measured = excluded.measured, device = excluded.device, counts = "

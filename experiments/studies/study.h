@@ -1,7 +1,7 @@
-// A study: a declared grid of points. Each point is measured independently, in any order and on any
-// machine, so that a study can be interrupted, resumed and divided among machines. The result of a
-// point is a structure, stored as a row. The structure's fields have the names of the counts in the
-// row; an empty optional is left out of the row.
+// A study is a declared grid of points. Each point is measured independently, in any order and on
+// any machine, so that a study can be interrupted, resumed and divided among machines. The result
+// of a point is a structure, stored as a row. The fields of the structure have the names of the
+// counts in the row. An empty optional is left out of the row.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class MeasurementContext;
 
 /// Pairs of a scene of ContactCells whose contact depends on ContactCells::value.
 struct VaryingCounts {
-  std::uint64_t varying = 0, missed_varying = 0;  // such pairs among `colliding` and `missed`
+  std::uint64_t varying = 0, missed_varying = 0;  // colliding pairs; missed pairs
   FARCULL_FIELDS(varying, missed_varying)
 };
 
@@ -39,7 +39,7 @@ struct AnswerCounts {
   std::optional<VaryingCounts> varying = {};
 };
 
-/// Work of a method that draws.
+/// Counts of the work of a method that draws.
 struct DrawnCounts {
   std::uint64_t queries = 0, draws = 0, queries_saved = 0, draws_saved = 0;
   FARCULL_FIELDS(queries, draws, queries_saved, draws_saved)
@@ -62,8 +62,8 @@ struct SizeCounts {
   FARCULL_FIELDS(resolution, mean_pixels)
 };
 
-/// Candidates of a method that are neighbours (verify/exact.h). `neighbours` counts only the
-/// colliding ones.
+/// Candidate pairs that are neighbours (verify/exact.h), and the colliding pairs among these
+/// candidates (`neighbours`).
 struct NeighbourCounts {
   std::uint64_t neighbour_candidates = 0, neighbours = 0;
   FARCULL_FIELDS(neighbour_candidates, neighbours)
@@ -73,15 +73,15 @@ struct NeighbourCounts {
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;  // missed pairs that penetrate (verify/contact.h); the
                                          // other missed pairs touch
-  /// Pairs that the same run misses with 0.9 times its radius (at_risk) and without a ball
+  /// Pairs that the same run misses with 0.9 times the budget radius (at_risk) and without a ball
   /// (at_risk_bare). Empty: not measured. If both counts are 0, a run without misses says nothing
   /// about the radius.
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
-  std::uint64_t left_by_boxes = 0;  // triangles that tests of boxes did not rule out
+  std::uint64_t left_by_boxes = 0;  // triangles that tests of boxes did not cull
   std::uint64_t views_used = 0;     // views that were drawn; 0: tests of boxes alone decided
   std::uint64_t colliding_triangles = 0;
   std::uint64_t kept_triangles = 0, kept_objects = 0;
-  bool promises = false;  // with its options, the method guarantees to miss nothing
+  bool promises = false;  // true: the run is guaranteed to miss no pair
   /// True if the device breaks the assumptions of the method's guarantee; otherwise empty.
   std::optional<bool> revoked = {};
   std::string scene_hash = {};
@@ -112,7 +112,7 @@ struct PeerCounts : AnswerCounts {
 struct LemmaCounts {
   std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0, rounded = 0;
   double largest_px = 0, largest_steps = 0;
-  double step_px = 0;  // step of the depth buffer
+  double step_px = 0;  // step of the depth buffer, px
   double radius_px = 0, budget_px = 0;
   bool promises = false;             // true with fragment depth and the budget radius or more
   std::optional<bool> revoked = {};  // as in RunCounts
@@ -120,7 +120,7 @@ struct LemmaCounts {
                  step_px, radius_px, budget_px, promises, revoked)
 };
 
-/// Placements in which the published radius may miss a pair. In one of the views x, y and z
+/// The placements at which the published radius may miss a pair. In one of the views x, y and z
 /// - the distance |x| + |y| of the contact from a corner of the pixels is at most corner_px, and
 /// - the rectangles of both triangles are turned from a diagonal of the pixels by at most the angle
 /// whose cosine is corner_cosine.
@@ -152,7 +152,7 @@ struct ForecastCounts {
   std::uint64_t missed_in_all = 0;                  // missed pairs, summed over the positions
   std::uint64_t missed_least = 0, missed_most = 0;  // missed pairs at one position
   double expected = 0, low = 0, high = 0;           // the prediction for one position
-  std::uint64_t outside = 0;  // positions whose number of misses is not in [low, high]
+  std::uint64_t outside = 0;  // positions with a number of misses outside of [low, high]
   std::uint64_t triangles = 0;
   bool promises = false;
   std::string scene_hash;
@@ -168,7 +168,7 @@ struct ClothCounts {
   std::uint64_t neighbour_candidates = 0;  // candidates that are neighbours, which are never culled
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
-  // As in RunCounts.
+  // The next fields up to scene_hash are as in RunCounts.
   std::uint64_t left_by_boxes = 0, views_used = 0;
   std::optional<std::uint64_t> at_risk = {}, at_risk_bare = {};
   bool promises = false;
@@ -203,14 +203,14 @@ struct SceneCounts {
   FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)
 };
 
-/// The names and values of counts, in the order in which a store holds them.
+/// Names and values of counts, in the order in which a store holds the counts.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
 using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
 
 /// Counts of a LibraryPoint, with the names of experiments/suite/ask.py. `missed` and `wrong` count
-/// answers that differ from those for closed triangles. Counts with `own_` in their names count
-/// answers that differ from what the library's documentation guarantees. `scores` holds these
-/// counts for each family, parameter and kind.
+/// answers that are not the answers for closed triangles. Counts with `own_` in their names count
+/// answers that differ from what the library's documentation guarantees. `scores` holds the counts
+/// for each family, parameter and kind.
 struct LibraryCounts {
   NamedCounts values = {};
 };
@@ -218,9 +218,9 @@ struct LibraryCounts {
 /// Counts of a NeighbourPoint.
 struct SetCounts {
   NeighbourSizes sizes;
-  std::uint64_t triangles = 0, objects = 0;  // of the scene
-  std::uint64_t accounted = 0;  // pairs of triangles of different objects, all decided by
-                                // the accounting (verify/distance_accounting.h)
+  std::uint64_t triangles = 0, objects = 0;  // numbers in the scene
+  std::uint64_t accounted = 0;  // pairs of triangles of different objects; the accounting
+                                // (verify/distance_accounting.h) decided all of them
   bool promises = false;        // true: guaranteed to keep all nearest neighbours and nearest pairs
   std::string scene_hash;
   FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
@@ -244,28 +244,28 @@ using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, 
                             ForecastCounts, ClothCounts, SceneCounts, LibraryCounts, SetCounts,
                             DistanceCounts>;
 
-/// Returns the names and values of counts. A member that has fields is replaced by its fields.
+/// Returns the names and values of counts. The fields of a member replace the member.
 NamedCounts to_columns(const Counts& counts);
 
-/// Times in milliseconds. They differ between runs.
+/// Times in milliseconds. Times differ between runs.
 struct PointTimes {
   std::optional<double> build = {};  // the time to build a library's hierarchies
   std::optional<double> cull = {}, exact = {};
-  std::optional<double> total = {};  // without setup
+  std::optional<double> total = {};  // the whole run without `setup`
   std::optional<double> setup = {};
   FARCULL_FIELDS(build, cull, exact, total, setup)
 };
 
 /// The result of one run of a point.
 struct PointResult {
-  Counts counts = {};  // equal in all runs on one device, bit for bit; if the device is "native" or
-                       // "cpu", equal on all machines
+  Counts counts = {};  // bitwise equal in all runs on one device; if the device is "native" or
+                       // "cpu", bitwise equal on all machines
   PointTimes times = {};
-  std::uint64_t answer = 0;   // hash of the pairs, to compare runs; it is not stored
+  std::uint64_t answer = 0;   // hash of the pairs, to compare runs; not stored
   std::string device = {};    // the GL renderer that drew, "native" (the native canvas drew), or
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build lacks, a
-                              // resolution beyond the device); empty if it was measured
+                              // resolution beyond the device); empty: the point was measured
 };
 
 /// A PointResult as a row of a store. Rows of other versions of farcull may have other counts.
@@ -284,7 +284,7 @@ bool breaks_promise(const Measurement& measurement);
 struct GridChoice {
   bool quick = false;      // the small grid, for a first look and for tests
   std::uint64_t seed = 1;  // seed of random points; at least 1
-  std::string suite = {};  // for the study "libraries": folder of a suite; empty: it is made
+  std::string suite = {};  // for the study "libraries": folder of a suite; empty: generated
   std::vector<std::string> contestants = {};  // for the study "libraries"; empty: all
 };
 
@@ -292,35 +292,35 @@ struct Study {
   std::string name;
   std::string title;     // one line
   std::string question;  // one or two sentences
-  /// The points, each once. Points of one scene are together, except in a campaign. The same choice
-  /// gives the same grid on every machine and in every build.
+  /// Returns the points, each once. Points of one scene are adjacent, except in a campaign. Equal
+  /// choices give equal grids on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
-  /// Throws Error for faults of the device or the machine. The point then fails, and a later run
-  /// measures it again.
+  /// Measures a point. Throws Error for faults of the device or the machine. The point then fails,
+  /// and a later run measures the point again.
   std::function<PointResult(const Point&, MeasurementContext&)> measure;
   /// Returns the library that would measure the point now, with its version, as in "CGAL 5.5.1".
   /// This is the count `library` in the point's row. Returns "" if no library measures the point,
   /// or if the library is missing. Null: no point of this study uses a library.
   std::function<std::string(const Point&)> library = {};
-  /// True if RunPoints have exactly the counts of measure_run(). Then studies can share their rows.
+  /// True if RunPoints have exactly the counts of measure_run(). Then studies can share rows.
   bool plain = false;
-  /// True for a campaign, which is not part of `all`. It takes many hours, needs what most machines
-  /// lack, or has its own page of results. It may alternate between its scenes, so that there
-  /// are results for all scenes if it ends early.
+  /// True for a campaign, which is not part of `all`. A campaign takes many hours, needs what most
+  /// machines lack, or has its own page of results. The grid of a campaign may alternate between
+  /// scenes, so that a campaign that ends early has results for all scenes.
   bool campaign = false;
 };
 
-/// All studies, in the order of docs/experiments.md.
+/// Returns all studies, in the order of docs/experiments.md.
 const std::vector<Study>& studies();
-/// Returns the studies of `farcull experiment all`: all studies that are no campaigns.
+/// Returns the studies of `farcull experiment all`: all studies except campaigns.
 std::vector<Study> studies_of_all();
 /// Returns the study with this name. Throws Error naming all studies if there is none.
 const Study& study_named(const std::string& name);
-/// Throws Error naming all contestants if the study "libraries" has none with this name.
+/// Throws Error naming all contestants if no contestant of the study "libraries" has this name.
 void require_contestant(const std::string& name);
 
-/// Returns the study reduced to points whose result may depend on the device: methods that draw or
-/// choose views, and the lemma experiment on a device.
+/// Returns the study reduced to points whose result may depend on the device: methods that draw,
+/// placed pairs without subpixel bits, and the lemma experiment on a device.
 Study on_devices(const Study& study);
 
 /// The studies; each is defined in one of the .cpp files beside this one.

@@ -1,10 +1,10 @@
-// The study "scenes" lists the scenes of all other studies, with the size of their triangles in
-// pixels. "culling" and "efficiency" count the pairs that methods leave to exact predicates, at
-// rest and in motion. "scaling" measures how the time of methods grows.
-//
-// FAR against I-COLLIDE: Govindaraju, Lin and Manocha, Fast and Reliable Collision Culling using
-// Graphics Hardware, TVCG 2006, section 6. Quick-CULLIDE against CULLIDE: IEEE VR 2005. Time
-// against objects, polygons and resolution: figures of CULLIDE, Graphics Hardware 2003.
+// Four studies. "scenes" lists the scenes of all other studies and the sizes of their triangles in
+// pixels. "culling" counts the candidate pairs of several methods. "efficiency" counts the
+// candidate pairs of methods in each frame of moving scenes. "scaling" measures how the run time of
+// methods grows.
+// Papers: "efficiency" compares FAR with I-COLLIDE (Govindaraju, Lin and Manocha, TVCG 2006,
+// section 6) and Quick-CULLIDE with CULLIDE (IEEE VR 2005). "scaling" has the plots of CULLIDE
+// (Graphics Hardware 2003).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ const PointScene* scene_of(const Point& point) {
   return nullptr;
 }
 
-// Lists each scene once. A moving scene is listed with the middle one of its measured frames.
+// Lists each scene once. For a moving scene, lists the middle frame of all its measured frames.
 std::vector<Point> scenes_grid(const GridChoice& choice) {
   std::vector<std::pair<std::string, std::vector<RunPoint>>> scenes;
   for (const Study& study : studies_of_all()) {
@@ -52,9 +52,9 @@ std::vector<Point> scenes_grid(const GridChoice& choice) {
   return out;
 }
 
-// Returns the areas in pixels of the images of triangles at kSceneResolution in the views x, y and
-// z, ascending. Takes only triangles that may collide: the triangle's box meets another object's
-// box, or its object is tested against itself.
+// Returns the areas of triangle images in pixels, in ascending order, for the views x, y and z at
+// kSceneResolution. Includes only triangles that may collide: the triangle's box overlaps the box
+// of another object, or the triangle's object is tested against itself.
 std::vector<double> covered_pixels(const Scene& scene) {
   std::vector<double> out;
   const Regions regions = find_regions(scene, {.self = true});
@@ -73,7 +73,7 @@ std::vector<double> covered_pixels(const Scene& scene) {
   return out;
 }
 
-// Returns the percentile by nearest rank.
+// Returns the percentile `part` (0 to 1) of the sorted values, by the nearest-rank method.
 double percentile(const std::vector<double>& sorted, double part) {
   const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];
@@ -97,8 +97,8 @@ PointResult measure_scene(const Point& point, MeasurementContext& lab) {
   return {.counts = counts, .times = {.exact = lab.truth().ms}, .device = "cpu"};
 }
 
-constexpr const char* kBoxes = "cgal-boxes";  // finds triangles whose boxes meet
-constexpr const char* kOriented = "fcl-obb";  // finds leaves of trees whose oriented boxes meet
+constexpr const char* kBoxes = "cgal-boxes";  // finds pairs of triangles whose boxes overlap
+constexpr const char* kOriented = "fcl-obb";  // finds tree leaves whose oriented boxes overlap
 
 std::vector<PointScene> culled_scenes(bool quick) {
   std::vector<const char*> names = {"two-bunnies",     "armadillo-elephant", "dragon-bunny",
@@ -125,8 +125,8 @@ std::vector<Point> culling_grid(const GridChoice& choice) {
   return out;
 }
 
-// Counts the neighbours among the candidates of the method `boxes`, so that they can be subtracted.
-// Libraries leave neighbours out, but `boxes` gives them to the predicates.
+// Also counts the neighbours: triangles of one object that share a vertex. The libraries skip them,
+// but `boxes` passes pairs of neighbours to the exact predicates.
 PointResult measure_culling(const Point& point, MeasurementContext& lab) {
   if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
   Record record;
@@ -138,10 +138,10 @@ PointResult measure_culling(const Point& point, MeasurementContext& lab) {
 
 struct MovingCase {
   const char* scene;
-  bool self = false;  // each object is tested against itself; few methods can do this
+  bool self = false;  // true: each object is also tested against itself; few methods can do so
 };
 
-// Returns all scenes that move, in sizes that are practical for drawing on a software device.
+// Returns moving scenes that are small enough for rendering in software. quick: only three scenes.
 const std::vector<MovingCase>& moving_cases(bool quick) {
   static const std::vector<MovingCase> full = {
       {"two-spheres"},     {"needles:60"},  {"crowd:60"},           {"field:4000"},
@@ -164,11 +164,11 @@ void add_methods(std::vector<Point>& out, const MovingCase& moving, const Motion
   out.push_back(plain_point(frame, boxes));
 }
 
-// A scene of a plot. A scene of several plots is measured once.
+// A scene of a plot. If several plots use a scene, the study measures the scene once.
 struct Case {
   std::string scene;
-  int resolution;  // of the methods that draw
-  bool drawn;      // true: also runs methods that draw, which are slow on a software device
+  int resolution;  // px, for the methods that render
+  bool drawn;      // true: also run the methods that render; they are slow in software
 };
 
 std::vector<Case> cases(bool quick) {
@@ -178,8 +178,8 @@ std::vector<Case> cases(bool quick) {
     out.push_back({std::move(scene), resolution, drawn});
   };
   // Each plot has at least six sizes, so that a fitted exponent has a confidence interval.
-  // First plot: time against the number of objects. The objects have about the same size, in a box
-  // that grows with their number.
+  // First plot: time against the number of objects. All objects have about the same size. The box
+  // that contains the objects grows with their number.
   for (const int n :
        quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
     add(fmt::format("crowd:{}", n), kUsual, true);
@@ -187,12 +187,12 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
   }
-  // Second plot: time against density. Denser objects collide more often.
+  // Second plot: time against density (objects per unit of volume).
   const int objects = quick ? 20 : 100;
   for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
   }
-  // Third plot: time against the number of polygons, for six tori with more and more triangles.
+  // Third plot: time against the number of triangles. Each scene consists of six tori.
   for (const int n :
        quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
     add(fmt::format("torii:{}", n), kUsual, true);
@@ -200,7 +200,7 @@ std::vector<Case> cases(bool quick) {
   if (!quick) {
     for (const int n : {5000, 20000, 80000}) add(fmt::format("torii:{}", n), kUsual, n <= 5000);
   }
-  // Time against resolution.
+  // Fourth plot: time against resolution.
   for (const int pixels : quick ? std::vector{32, 64, 128, 256, 512, 1024}
                                 : std::vector{64, 128, 256, 512, 1024, 2048}) {
     add("two-spheres", pixels, true);
@@ -208,8 +208,8 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-// A point has nine runs. Their range contains the median of another nine runs with a probability of
-// 95 %. With fewer runs the probability is lower (docs/experiments.md, "Statistics").
+// The range of nine runs contains the median of another nine runs with a probability above 95 %.
+// The range of fewer runs does so less often (docs/experiments.md, "Statistics").
 constexpr int kRepeat = 3 * kRounds;
 
 std::vector<RunPoint> points_of(const Case& c) {
@@ -240,8 +240,8 @@ Study culling_study() {
 Study efficiency_study() {
   const auto grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    // There are at least six frames. The range of fewer frames contains the median with a
-    // probability below 95 %.
+    // The range of n independent values contains the true median with probability 1 - 2^(1 - n).
+    // This is at least 95 % only if n is 6 or more.
     const long frames = choice.quick ? 6 : 12;
     for (const MovingCase& moving : moving_cases(choice.quick)) {
       for (long frame = 0; frame < frames; ++frame)

@@ -24,13 +24,13 @@ import time
 from fractions import Fraction
 
 KINDS = ['pair', 'mesh', 'distance', 'self', 'inside', 'clash']
-QUICK = ('pair', 'distance')  # kinds without a path
-AHEAD = 32  # quick questions that are sent before their answers
-LONGEST = 1 << 16  # bytes of a line
-MOST = 1 << 28  # bytes of an answer; an endless answer would take all memory
-AGAIN = 16  # one of this many questions of a family is asked again
-OFF = 1e-6  # relative errors of distances and points above this are counted
-ROUNDED = 2.0 ** -48  # errors of distances below this share of the largest coordinate are rounding
+QUICK = ('pair', 'distance')  # questions that name no file
+AHEAD = 32  # at most so many quick questions are sent but not yet answered
+LONGEST = 1 << 16  # bytes; longer lines of output may be refused
+MOST = 1 << 28  # limit for the length of an answer; an endless answer would fill the memory
+AGAIN = 16  # in each family, every 16th question is asked a second time
+OFF = 1e-6  # relative errors of distances and points are counted if they are larger than this
+ROUNDED = 2.0 ** -48  # permitted rounding error of a distance, relative to the largest coordinate
 
 
 class Wrong(Exception):
@@ -44,9 +44,9 @@ class Child:
 
     def __init__(self, command, options):
         def limit():
-            import resource  # pylint: disable=import-outside-toplevel  # not on Windows
+            import resource  # pylint: disable=import-outside-toplevel  # Windows has no such module
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # the process ends even if this program was killed
+            resource.setrlimit(resource.RLIMIT_CPU, (3600, 3605))  # seconds; the child ends even if this program is killed
             resource.setrlimit(resource.RLIMIT_DATA, (options.memory << 20,) * 2)
         self.errors = tempfile.TemporaryFile()
         posix = os.name == 'posix'
@@ -81,7 +81,7 @@ class Child:
                 file.flush()
 
     def send(self, text):
-        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # a path may be no UTF-8; restores its bytes
+        self.texts.put(text.encode('utf-8', 'surrogateescape'))  # restores the bytes of a path that is not UTF-8
 
     def end_input(self):
         self.texts.put(b'')
@@ -108,15 +108,15 @@ class Child:
         self.process.wait()
         self.end_input()
         self.errors.close()
-        while not self.lines.empty():  # read() may wait for room in the queue
+        while not self.lines.empty():  # the thread of read() may be waiting for room in the queue
             self.lines.get()
 
 
 Answer = collections.namedtuple('Answer', 'outcome value ns reason')
 LINE_END = re.compile('\r?\n$')
 NOT_ASKED, UNANSWERED = (Answer(outcome, None, 0, '') for outcome in ('not asked', 'unanswered'))
-HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # how a process ended
-# kind: one of KINDS, or card. fields: the fields after the kind. family: ask() counts for each family how often a process died.
+HUNG, ENDED = ('hung', 'no answer within the limit'), ('unanswered', '')  # outcome and reason: how a process ended
+# kind: one of KINDS, or 'card'. fields: the fields after the kind. family: ask() counts, per family, how many processes died.
 Question = collections.namedtuple('Question', 'kind fields family', defaults=[''])
 
 FOUR = re.compile('[0-9]{1,18}(\t[0-9]{1,18}){3}')
@@ -143,7 +143,7 @@ def parse(kind, fields, so_far):
         so_far.append(rest)
         return None
     if kind == 'mesh' and word == 'pair':
-        if not FOUR.fullmatch('\t'.join(rest)):  # one match for four numbers is fast; there are millions of lines
+        if not FOUR.fullmatch('\t'.join(rest)):  # one match is faster than four; lists are long
             raise ValueError(rest)
         so_far.append(tuple(map(int, rest)))
         return None
@@ -162,7 +162,7 @@ def ask_from(child, questions, first, answers, limit, start):
     while True:
         quick = sent < len(questions) and not so_far and questions[sent].kind in QUICK
         ahead = AHEAD if quick else 2
-        if sent < len(questions) and not so_far and sent <= following + ahead // 2:  # sends half of `ahead` at a time
+        if sent < len(questions) and not so_far and sent <= following + ahead // 2:  # at most half is unanswered
             until = min(following + ahead, len(questions))
             until = next((i for i in range(sent, until) if (questions[i].kind in QUICK) != quick), until)
             child.send(''.join('\t'.join([str(i), questions[i].kind, *questions[i].fields]) + '\n' for i in range(sent, until)))
@@ -197,7 +197,7 @@ def ask_from(child, questions, first, answers, limit, start):
             now = time.monotonic()
             answers[at] = answer if answer.ns is not None else answer._replace(ns=(now - since) * 1e9)
             following, so_far, since, size, start, left = at + 1, [], now, 0, 0, 0
-        elif left < 0:  # the limit is for all lines of the answer together
+        elif left < 0:  # all lines of an answer share one time limit
             return following, HUNG
 
 
@@ -211,13 +211,13 @@ def ask(command, questions, options):
         if deaths[questions[first].family] >= options.deaths:
             following += 1
             continue
-        with contextlib.closing(Child(command, options)) as child:  # Ctrl-C reaches only this program, so it ends the child
+        with contextlib.closing(Child(command, options)) as child:  # closing() ends the child, which Ctrl-C does not reach
             following, (outcome, reason) = ask_from(child, questions, first, answers, options.limit, start)
         start = 2 * options.limit
         if following == len(questions):
             return answers, (outcome, reason)
         if (outcome == 'no memory' or reason.startswith('SIGXCPU')) and following > first:
-            continue  # earlier questions may have used up memory or time; only the first question of a process is blamed
+            continue  # earlier questions may have used up memory or time: asks again in a new process
         answers[following] = Answer(outcome, None, 0, reason)
         deaths[questions[following].family] += 1
         following += 1
@@ -228,7 +228,7 @@ def ask_twice(command, questions, options):
     """Returns the answers, and for each question whether a second answer differed (None: it was not asked again)."""
     answers = ask(command, questions, options)[0]
     step = AGAIN if questions and questions[0].kind != 'mesh' else 1
-    at = collections.Counter()  # number of questions of each family
+    at = collections.Counter()  # number of earlier questions, per family
     again = []
     for i, question in enumerate(questions):
         if at[question.family] % step == 0 and answers[i].outcome in ('answered', 'refused'):
@@ -238,7 +238,7 @@ def ask_twice(command, questions, options):
     for i, second in zip(again, ask(command, [questions[i] for i in again], options)[0]):
         if second.outcome != 'not asked':
             first = answers[i]
-            if questions[i].kind == 'mesh':  # pairs of a mesh may come in any order
+            if questions[i].kind == 'mesh':  # the pairs of a mesh may be listed in any order
                 first, second = (one._replace(value=sorted(one.value or [])) for one in (first, second))
             differs[i] = (second.outcome, second.value) != (first.outcome, first.value)
     return answers, differs
@@ -329,11 +329,11 @@ def segment_to_segment(e, f):
 def within(a, b, margin):
     """True if two triangles that do not cross are at most the margin apart."""
     boxes = [[(min(axis), max(axis)) for axis in zip(*t)] for t in (a, b)]
-    # The margin is a double, so rounding does not bring a gap from below the margin to above it.
+    # Rounding is monotonic and the margin is a double. So an exact gap of at most the margin is never rounded to a larger value.
     if any(max(p[0] - q[1], q[0] - p[1]) > float(margin) for p, q in zip(*boxes)):
         return False
     a, b, ((margin,),) = whole(a, b, [[float(margin)]])
-    for n in normal(a), normal(b):  # most triangles are far apart along one of the normals
+    for n in normal(a), normal(b):  # one of the normals separates most triangles that are far apart
         at_a, at_b = [dot(n, p) for p in a], [dot(n, p) for p in b]
         gap = max(min(at_a) - max(at_b), min(at_b) - max(at_a))
         if gap > 0 and gap ** 2 > margin ** 2 * square(n):
@@ -457,8 +457,7 @@ def corners_of(numbers):
     return [[numbers[3 * i + k] for k in range(3)] for i in range(3)]
 
 
-# A line of a list: its number, its parameter, the question, its label (a kind of contact, yes, no, LOW,HIGH or ?), and its
-# coordinates.
+# One line of a list. label: a kind of contact, yes, no, LOW,HIGH, or ? if unknown. numbers: the coordinates.
 Listed = collections.namedtuple('Listed', 'number parameter question label numbers')
 
 
@@ -482,7 +481,7 @@ def lists_of(card, suite, kinds):
     other kind share a process: they are few, and starting a process takes longer than most of them."""
     for name in suite.lists('pairs') if 'pair' in kinds else []:
         yield 'pair', [one for one in pairs_of(suite, name) if one.question.fields[0] == '-' or card['neighbours'] == 'yes']
-    families = {}  # the lines of the questions about meshes, by family
+    families = {}  # the lines of all files of questions, by family
     for family, lines in map(suite.lines, suite.lists('questions') if {*kinds} & {*KINDS[2:]} else []):
         families.setdefault(family, []).extend(lines)
     for kind in KINDS[2:]:
@@ -518,7 +517,7 @@ def score_distance(label, numbers, value, row):
         row['zero'] += distance == 0
         row['not zero'] += distance > 0 == high
         row['negative'] += distance < 0
-        if distance > 0 and high > 0:  # low is 0 if the distance is below the smallest double above 0
+        if distance > 0 and high > 0:  # low is 0 if the distance is less than the smallest positive double
             row['off'] += error / (low or high) > OFF
             row.worst = max(row.worst, error / (low or high))
     triangles = [corners_of(numbers), corners_of(numbers[9:])]
@@ -527,10 +526,10 @@ def score_distance(label, numbers, value, row):
         def exact(corners):
             return [[Fraction(x) for x in corner] for corner in corners]
 
-        # The permitted error of a point: a fraction of the size, but at least the distance of neighbouring doubles.
+        # near: permitted error of a point, OFF times the size of the triangles, but at least the spacing of doubles.
         near = max(Fraction(OFF) * Fraction(size), Fraction(max(map(abs, numbers))) / 2 ** 52)
         points = exact([points[:3], points[3:]])
-        # The largest permitted distance of the two points. Each may be off by `near`, and the distance by the factor 1 + OFF.
+        # most: largest permitted distance of the points, if each is off by `near`, and the distance by the factor 1 + OFF.
         most = 2 * near + Fraction(high) * (1 + Fraction(OFF))
         row['points'] += 1
         row['points off'] += square(minus(*points)) > most ** 2 or any(
@@ -611,7 +610,7 @@ def table_of(kind, rows):
         total.add(row)
     head = ['family', *COLUMNS[kind], *(['worst'] if kind == 'distance' else []), *OUTCOMES, 'us each']
     lines = [head] + [cells_of(name, row) for name, row in [*rows.items(), ('all', total)]]
-    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # no column for absent outcomes
+    kept = [i for i, title in enumerate(head) if title not in OUTCOMES or total[title]]  # omits outcomes that did not occur
     widths = [max(len(line[i]) for line in lines) for i in kept]
     text = '\n'.join('  '.join(line[i].rjust(width) if i else line[i].ljust(width) for i, width in zip(kept, widths))
                      for line in lines)
@@ -628,7 +627,7 @@ def write_csv(path, name, rows):
                 writer.writerow([name, kind, family, *(row[column] for column in columns), row.worst, int(row['ns']), row.reason])
 
 
-# The counts of a row that `--json` writes, by their names in the JSON. `answered` counts only answers whose label is known.
+# Maps the names in the output of `--json` to the counts of a Row. `answered` counts only answers that is_scored() accepts.
 SCORE = {**{name: name for name in ('asked', 'missed', 'wrong', 'own asked', 'own missed', 'own wrong', 'refused', 'unanswered',
                                     'crashed', 'hung', 'no memory', 'not asked', 'twice')},
          'answered': 'scored', 'differing': 'differs', 'timed': 'answered',
@@ -640,11 +639,11 @@ def as_json(card, rows):
     of all rows, and the rows."""
     total, scores = Row(), []
     for (kind, family, parameter, label), row in rows.items():
-        if kind == 'mesh':  # counts colliding pairs in place of questions
+        if kind == 'mesh':  # for meshes, colliding pairs are counted instead of questions
             row['asked'] = row['scored'] = row['colliding']
         if kind == 'distance':
             row['wrong'] = sum(row[name] for name in ('zero', 'not zero', 'negative', 'off'))
-            row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # other libraries do not promise points
+            row['wrong'] += row['points off'] * (card['promises'] == 'yes')  # only some libraries promise correct points
         total.add(row)
         folder = {'pair': 'pairs', 'mesh': 'meshes'}.get(kind, kind)
         scores.append([f'{folder}/{family}', parameter, label if kind == 'pair' else kind,

@@ -1,9 +1,9 @@
-// Decides labels of pairs, meshes and questions of a suite.
+// Computes the labels (the right answers) of pairs, meshes and questions of the test suite.
 //
-// The kind of a pair follows from the common points of two triangles. The intersection is convex.
-// Each of its corners is a corner of a triangle, a point where an edge crosses the other triangle's
-// plane, or a point where two edges cross. These points are computed as rational numbers, so
-// nothing is rounded.
+// The kind of a pair follows from the intersection of the two triangles, which is convex. Each
+// corner of the intersection is a corner of a triangle, a point where an edge crosses the other
+// triangle's plane, or a point where two edges cross. These points are computed as rational
+// numbers, so nothing is rounded.
 #include "experiments/suite/label.h"
 
 #include <fmt/format.h>
@@ -101,14 +101,14 @@ class CommonPoints {
     for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
     return out;
   }
-  /// True if the two triangles are the same set of points: each one contains the corners of the
-  /// other.
+  /// True if the triangles are the same set of points: each triangle contains all corners of the
+  /// other triangle.
   bool all_of_both() const {
     return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
            std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
   }
-  /// True if all six corners are in one plane. Precondition: there are at least two common points.
-  /// So if both triangles are segments (both normals are 0), they lie on one line.
+  /// True if all six corners are in one plane. Precondition: at least two common points. If both
+  /// normals are 0, both triangles are segments on one line, and the result is true.
   bool coplanar() const {
     const Q3& n = is_zero(normal_a_) ? normal_b_ : normal_a_;
     const auto in_plane = [&](const Q3& p) { return sgn(dot(n, minus(p, a_[0]))) == 0; };
@@ -124,7 +124,7 @@ class CommonPoints {
   bool has(const Q3& p) const {
     return std::find(points_.begin(), points_.end(), p) != points_.end();
   }
-  /// Adds the points at which edges of s go from one side of the plane of t to the other.
+  /// Adds the points where edges of s cross the plane of t. n: the normal of t.
   void add_through_plane(const Triangle& s, const Triangle& t, const Q3& n) {
     if (is_zero(n)) return;
     for (int i = 0; i < 3; ++i) {
@@ -133,7 +133,7 @@ class CommonPoints {
       if (sgn(from) * sgn(to) < 0) add(between(s[i], s[(i + 1) % 3], from / (from - to)));
     }
   }
-  /// Adds the point in which edge i of a and edge j of b meet, unless they are parallel.
+  /// Adds the point where edge i of a and edge j of b meet, unless the edges are parallel.
   void add_of_edges(int i, int j) {
     const Q3 u = edge(a_, i);
     const Q3 v = edge(b_, j);
@@ -154,8 +154,7 @@ Triangle rational_triangle(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
-/// True if p is a corner of the triangle. If the triangle is a segment: true if p is an end of the
-/// segment.
+/// True if p is a corner of the triangle; for a segment, true if p is an end of the segment.
 bool is_corner(const Q3& p, const Triangle& t) {
   if (std::find(t.begin(), t.end(), p) == t.end()) return false;
   if (!is_zero(normal(t))) return true;
@@ -179,8 +178,8 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
-  // The relative interior of a triangle is the triangle without its edges. A degenerate triangle (a
-  // segment) has only edges. So here a single common point is inside the other triangle.
+  // A single common point here means: one triangle is a segment through the inside of the other.
+  // More common points form a segment; the triangles cross if its middle is on no edge.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
 }
@@ -202,7 +201,7 @@ std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
   return out;
 }
 
-/// Throws Error if triangles of the object use two vertices at one position.
+/// Throws Error if the triangles of the object use two different vertices at the same position.
 void require_distinct(const Scene& scene, const Object& object, const std::string& where) {
   std::map<std::array<double, 3>, std::uint32_t> at;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
@@ -242,8 +241,8 @@ Vec3 point_in(RandomDraws& draws, const Box& box) {
   return out;
 }
 
-/// Returns a point for which "inside" is hard to decide. parameter: 0: anywhere in the box; 1:
-/// straight above or below a vertex, so that a ray along an axis hits the vertex; 2: at a vertex;
+/// Returns a random point; parameters 1 to 3 make "inside" hard to decide. 0: anywhere in the box;
+/// 1: on the axis-parallel line through a vertex, so that a ray can hit the vertex; 2: at a vertex;
 /// 3: near the middle of a face.
 Vec3 hard_point(RandomDraws& draws, const Scene& scene, const Box& box, int parameter) {
   const Object& object = scene.objects[0];
@@ -271,8 +270,8 @@ SuiteQuestion about(SuiteQuestionKind kind, const SuiteMesh& mesh,
   return out;
 }
 
-/// Returns whether the object meets itself; nothing if two of its vertices are at one position,
-/// since triangles may then be neighbours by position, but not by index.
+/// Returns whether the object meets itself. Empty if two vertices are at one position: triangles
+/// may then be neighbours by position, but not by index.
 std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   try {
     return !decide_mesh(scene, where).empty();
@@ -282,8 +281,8 @@ std::optional<bool> decide_self(const Scene& scene, const std::string& where) {
   }
 }
 
-constexpr int kPoints = 24;              // points for each closed object
-constexpr std::size_t kDistances = 530;  // pairs for each family, as in the small suite
+constexpr int kPoints = 24;              // questions "inside" for each closed object
+constexpr std::size_t kDistances = 530;  // pairs per family, as in the small suite
 
 }  // namespace
 
@@ -466,7 +465,7 @@ std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& poi
   std::vector<bool> out;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const bool by_rays = inside(scene, 0, points[i], surface) != Inside::no;
-    // which() is right only off the mesh, so points on the mesh are found first.
+    // which() requires a point off the mesh, so points on the mesh are found first.
     bool by_integers = false;
     for (std::uint32_t t = 0; t < scene.objects[0].triangle_count && !by_integers; ++t) {
       const auto corners = scene.corners(scene.objects[0].first_triangle + t);

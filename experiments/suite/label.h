@@ -1,5 +1,5 @@
-// Labelled triangle pairs, meshes and questions of a suite, and the functions that decide labels.
-// docs/suite.md defines the format of the files.
+// The data of the test suite: pairs of triangles, meshes and questions, each with its label (the
+// right answer). Also the functions that compute labels. docs/suite.md defines the file format.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace farcull {
 
-/// How two closed triangles meet. docs/suite.md defines the kinds; a pair has exactly one.
-/// unlabelled: not decided yet.
+/// How two closed triangles meet. Each pair has exactly one kind; docs/suite.md defines the kinds.
+/// unlabelled: the kind is not computed yet.
 enum class SuiteKind : std::uint8_t {
   apart,
   touch_vertex,
@@ -22,19 +22,17 @@ enum class SuiteKind : std::uint8_t {
   crossing,
   coplanar,
   equal,
-  neighbours_meet,   // neighbours that meet in more than their shared vertices and the edge between
-                     // these
-  neighbours_apart,  // neighbours that meet only in their shared vertices and the edge between
-                     // these
+  neighbours_meet,   // neighbours with common points outside their shared corners and shared edge
+  neighbours_apart,  // neighbours without such common points
   unlabelled
 };
 
-/// The name in a list of pairs, such as "touch-vertex"; "?" for unlabelled.
+/// Returns the name that files use, such as "touch-vertex"; "?" for unlabelled.
 std::string to_string(SuiteKind kind);
-/// True if a pair of this kind collides. Precondition: not unlabelled.
+/// True if a pair of this kind collides. Precondition: the kind is not `unlabelled`.
 bool collides(SuiteKind kind);
 
-/// Corner `a` (0 to 2) of the first triangle and corner `b` of the second are one vertex of a mesh.
+/// Corner `a` (0 to 2) of the first triangle and corner `b` of the second are the same mesh vertex.
 struct SharedCorner {
   std::uint8_t a = 0;
   std::uint8_t b = 0;
@@ -42,9 +40,9 @@ struct SharedCorner {
 };
 
 struct SuitePair {
-  std::uint64_t id = 0;  // position in its file, from 0
-  double parameter = 0;  // the family's parameter; 0 if it has none
-  /// Corners that are one vertex of a mesh, ascending, each pair once; empty if not neighbours.
+  std::uint64_t id = 0;  // position in the file, from 0
+  double parameter = 0;  // parameter of the family; 0 if the family has no parameter
+  /// Shared corners, ascending, each listed once; empty if the triangles are not neighbours.
   std::vector<SharedCorner> shared;
   SuiteKind kind = SuiteKind::unlabelled;
   std::array<Vec3, 3> a, b;  // finite corners; either triangle may be degenerate
@@ -58,37 +56,36 @@ struct SuitePairs {
 
 /// A colliding pair of a mesh.
 struct SuiteMeshPair {
-  TrianglePair pair;         // of SuiteMesh::scene
-  std::uint32_t shared = 0;  // common vertices, 0 to 3; 0 in different objects
+  TrianglePair pair;         // triangle indices in SuiteMesh::scene
+  std::uint32_t shared = 0;  // number of common vertices; 0 for triangles of different objects
   auto operator<=>(const SuiteMeshPair&) const = default;
 };
 
 struct SuiteMesh {
-  std::string name;  // of the folder
+  std::string name;  // name of the folder of the mesh
   std::string family;
   double parameter = 0;
-  bool self = false;                 // each object is tested against itself
-  Scene scene;                       // objects "0", "1", ... in order; each with the same `self`
+  bool self = false;                 // true: each object is tested against itself
+  Scene scene;                       // objects "0", "1", ... in this order, with equal `self`
   std::vector<SuiteMeshPair> pairs;  // all colliding pairs, ascending, each once
 };
 
-/// A finite double as C's %a prints it, such as 0x1.8p+1, whatever the locale.
+/// Returns a finite double in the format %a of C's printf, such as 0x1.8p+1, in any locale.
 std::string hexadecimal(double value);
 
-// Two exact oracles that share no code decide each label, so that no label depends on one program
-// alone.
+// Two exact methods that share no code compute each label. So no label depends on one program.
 
-/// Returns how two closed triangles meet; docs/suite.md defines the kinds. Two oracles decide
-/// whether the triangles meet: CGAL's predicates (verify/exact), and integer arithmetic on 38
-/// directions and 21 points (verify/certificate). The common points, as rational numbers, decide
-/// how the triangles meet. CGAL's predicates (verify/contact) decide whether they cross. Throws
-/// Error naming `where` if two oracles differ. Precondition: finite coordinates.
+/// Returns how two closed triangles meet; docs/suite.md defines the kinds. Whether the triangles
+/// meet is decided twice: by CGAL's predicates (verify/exact) and by integer arithmetic
+/// (verify/certificate). If they meet, their common points, computed as rational numbers, give the
+/// kind. CGAL's predicates (verify/contact) check whether the kind is `crossing`. Throws Error
+/// naming `where` if two results differ. Precondition: finite coordinates.
 SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       const std::string& where);
 
-/// Returns the kind of a pair of neighbours: whether they meet in more than their shared corners
-/// and the segments between these. CGAL's predicates and integer arithmetic decide. Throws Error as
-/// decide_kind() does.
+/// Returns neighbours_meet if the triangles have common points outside their shared corners and the
+/// segments between shared corners, else neighbours_apart. Decided twice, by CGAL's predicates and
+/// by integer arithmetic. Throws Error as decide_kind() does.
 SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
 
@@ -98,11 +95,11 @@ SuiteKind decide(const SuitePair& pair, const std::string& where);
 /// Returns every pair of corners at equal positions, ascending.
 std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Returns all colliding pairs of a mesh, ascending. A box join and CGAL's predicates find the
-/// pairs. The checker of certificates proves the list with integers alone. Throws Error naming
-/// `where` if the checker does not prove it. Also throws Error if an object that is tested against
-/// itself has two vertices at one position: their triangles would be neighbours by position, but
-/// not by index.
+/// Returns all colliding pairs of a mesh, ascending. A join of boxes finds candidates, and CGAL's
+/// predicates test the candidates. The certificate checker then proves the list in integers. Throws
+/// Error naming `where` if the proof fails. Also throws Error if an object that is tested against
+/// itself has two vertices at one position: its triangles could be neighbours by position, but not
+/// by index.
 std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& where);
 
 // ---- questions beyond "which triangles collide" ----
@@ -113,9 +110,9 @@ struct SuiteQuestion {
   std::uint64_t id = 0;
   double parameter = 0;
   SuiteQuestionKind kind = SuiteQuestionKind::distance;
-  std::string label = {};                // as in the file; "?" if it is not known
-  std::vector<std::string> paths = {};   // of OBJ files, relative to the folder of the suite
-  std::vector<double> coordinates = {};  // 18 of two triangles, 3 of a point, or none
+  std::string label = {};                // right answer as written in the file; "?": unknown
+  std::vector<std::string> paths = {};   // OBJ files, relative to the folder of the suite
+  std::vector<double> coordinates = {};  // 18 for two triangles, 3 for a point, or none
 };
 
 /// One file of questions.
@@ -124,33 +121,33 @@ struct SuiteQuestions {
   std::vector<SuiteQuestion> questions = {};
 };
 
-/// The text of a file of questions.
+/// Returns the text of the file.
 std::string questions_text(const SuiteQuestions& questions);
 
-/// Returns questions for the distances of the first pairs of a family: as many as the small suite
-/// has pairs of the family. Pairs with shared corners are left out.
+/// Returns questions about distances: one for each of the first 530 pairs of a family, without the
+/// pairs that share corners. The small suite has 530 pairs of each family.
 SuiteQuestions questions_of(const SuitePairs& pairs);
-/// Returns questions about the objects of a mesh: whether an object meets itself, and for closed
-/// objects, whether points are inside and whether two objects clash. Leaves out questions that the
-/// oracles cannot decide.
+/// Returns questions about the objects of a mesh. For each object: does the object meet itself? For
+/// closed objects: is a point inside (kind `inside`), and do the insides of two objects overlap
+/// (kind `clash`)? Omits questions that cannot be decided.
 SuiteQuestions questions_of(const SuiteMesh& mesh, std::uint64_t seed);
 
-// These functions decide labels of questions. Two programs that share no code decide each label.
-// The functions throw Error naming `where` if the two programs differ.
+// The next functions compute labels of questions. Two implementations that share no code compute
+// each label. If their results differ, the functions throw Error naming `where`.
 
-/// Returns "LOW,HIGH": equal or neighbouring doubles, between which the distance of the triangles
-/// lies. One program computes with exact fractions (verify/closest.h), the other with integers and
-/// the directions of the certificate checker.
+/// Returns "LOW,HIGH" with LOW <= distance of the triangles <= HIGH. LOW and HIGH are equal or
+/// adjacent doubles. One implementation computes the distance as an exact fraction
+/// (verify/closest.h). The other uses integers and the directions of the certificate checker.
 std::string decide_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                             const std::string& where);
-/// Returns for each point whether it is inside the closed object 0 of the scene or on its surface.
-/// One program uses rays in rational numbers (verify/inside.h), the other integers
-/// (verify/certificate/integer_distance.h).
+/// Returns one value per point: true if the point is inside object 0 of the scene or on the surface
+/// of object 0. One implementation casts rays in rational numbers (verify/inside.h), the other uses
+/// integers (verify/certificate/integer_distance.h). Precondition: object 0 is closed.
 std::vector<bool> decide_inside(const Scene& scene, const std::vector<Vec3>& points,
                                 const std::string& where);
-/// Returns whether the insides of the closed objects 0 and 1 overlap. True if a point inside both
-/// objects is found; the oracles of decide_inside() check the point. False if an axis-aligned plane
-/// lies between the objects. Empty if neither such a point nor such a plane is found.
+/// Returns whether the insides of the closed objects 0 and 1 overlap. True if random sampling finds
+/// a point inside both objects; decide_inside() checks this point. False if the bounding boxes do
+/// not overlap, apart from their boundaries. Otherwise empty.
 std::optional<bool> decide_clash(const Scene& scene, const std::string& where);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// Makes and writes a suite. Pairs are decided on all cores. Each result has its own slot, so the
-// results are in the order of their IDs.
+// Makes and writes a suite. Threads label the pairs in parallel. Each pair is stored at the index
+// of its ID, so the order does not depend on the threads.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ std::string colliding_text(const SuiteMesh& mesh) {
   return out;
 }
 
-/// Returns the line of one pair, without a newline.
+/// Returns the line of a pair in the file, without a newline.
 std::string pair_line(const SuitePair& pair) {
   std::string shared;
   for (const auto& [i, j] : pair.shared)
@@ -90,7 +90,7 @@ std::string pairs_text(const SuitePairs& pairs) {
   return out;
 }
 
-/// Returns the text of suite.txt, with the sum of this text. Does not use `index.sum`.
+/// Returns the text of suite.txt, with the sum as its last line. Ignores `index.sum`.
 std::string index_text(const SuiteIndex& index) {
   std::string out = fmt::format("farcull-suite 1\nseed {}\nsize {}\nlicence {}\n", index.seed,
                                 index.size, index.licence);
@@ -106,7 +106,7 @@ std::string sum_of(const std::string& text) {
   return text.size() > kLine ? text.substr(text.size() - 65, 64) : "";
 }
 
-/// Writes files below a folder and lists them.
+/// Writes files below a folder, and adds each file to the index.
 class Folder {
  public:
   Folder(std::string path, SuiteIndex& index) : path_(std::move(path)), index_(index) {

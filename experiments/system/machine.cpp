@@ -52,8 +52,8 @@ std::optional<double> status_kib(const std::string& key) {
 
 }  // namespace
 
-// Queries the scheduler, since the C library would count all cores that are online, even if the
-// process is confined to fewer cores.
+// Queries the scheduler: the C library may count all online cores, even if the process is confined
+// to fewer cores.
 unsigned usable_cores() {
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof cores, &cores) != 0)
@@ -132,8 +132,8 @@ std::optional<LoadMeter::Ticks> LoadMeter::read() {
   return out;
 }
 
-// At each tick a processor is either busy or idle. So the number of busy ticks among n ticks has a
-// standard deviation of at most sqrt(n) / 2.
+// At each tick a processor is either busy or idle. So for n ticks, the standard deviation of the
+// number of busy ticks is at most sqrt(n) / 2.
 std::optional<Load> LoadMeter::now() const {
   const std::optional<Ticks> after = read();
   if (!before_ || !after) return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<Load> LoadMeter::now() const {
 }
 
 TimingLock::TimingLock(const std::string& path) {
-  // A file of another user may not be writable, but reading is enough for a lock.
+  // A file of another user may not be writable. A lock needs only read access.
   const auto open = [&](int flags) { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); };
   const bool ours = (file_ = open(O_RDWR)) >= 0 || (file_ = open(O_RDWR | O_CREAT)) >= 0;
   if (!ours && (file_ = open(O_RDONLY)) < 0) {
@@ -166,7 +166,7 @@ TimingLock::TimingLock(const std::string& path) {
   ::fchmod(file_, 0666);
   const std::string own = std::to_string(::getpid());
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // No error is thrown, since the process number only serves the message above.
+    // A failure is ignored: the process number serves only the error message above.
   }
 }
 

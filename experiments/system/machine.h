@@ -1,5 +1,5 @@
-// The machine, for reports of measurements: its cores, CPU, memory and load. Also the lock that
-// keeps two programs from measuring times at once.
+// Properties of the machine, for reports of measurements: cores, CPU, memory and load. Also a lock
+// that keeps two programs from measuring times at once.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@ unsigned usable_cores();
 /// if the system refuses. Precondition: threads >= 1.
 void confine_to_cores(unsigned threads);
 
-/// Return the model and the features of the CPU from /proc/cpuinfo; "unknown" if missing there.
+/// Both return text from /proc/cpuinfo, or "unknown" if /proc/cpuinfo does not have it.
 std::string cpu_model();
 std::string cpu_features();
 
 /// Measures the growth of resident memory. The constructor returns free memory to the system,
-/// stores the resident size, and resets the peak (VmHWM, by /proc/self/clear_refs).
+/// stores the resident size, and resets the peak (VmHWM) through /proc/self/clear_refs.
 class PeakMemory {
  public:
   PeakMemory();
@@ -30,28 +30,27 @@ class PeakMemory {
   std::optional<double> before_kib_;
 };
 
-/// How much other programs used the processors that this process may use.
+/// The load that other programs put on the processors that this process may use.
 struct Load {
-  double share = 0;  // part of these processors' time, 0 to 1
-  double error = 0;  // two standard deviations of `share`: the system counts whole clock ticks
+  double share = 0;  // fraction of these processors' time, 0 to 1
+  double error = 0;  // two standard deviations of `share`; /proc/stat counts whole ticks
   bool beyond(double limit) const { return share - error > limit; }
 };
 
-/// Measures the load since construction: the time in which the processors of this process were busy
-/// (/proc/stat), less the time of this process and of its ended children. Time that a hypervisor
-/// took counts as busy. The system's load average is no substitute: in a container it counts the
-/// processes of all cores of the machine, and it lags by a minute.
+/// Measures the load since construction: the busy time of this process's processors (/proc/stat),
+/// minus the time of this process and of its ended children. Time that a hypervisor took counts as
+/// busy. The load average of the system would not do: in a container it counts the processes on all
+/// cores of the machine, and it lags by a minute.
 class LoadMeter {
  public:
   LoadMeter();
-  /// Returns nothing if there is no /proc/stat, or if /proc/stat lacks the time of this process
-  /// (gVisor). In a container whose /proc/stat covers only that container (lxcfs), load from
-  /// outside is not seen.
+  /// Returns nothing if /proc/stat does not exist, or if it lacks the time of this process
+  /// (gVisor). In a container with its own /proc/stat (lxcfs), load from outside is not seen.
   std::optional<Load> now() const;
 
  private:
   struct Ticks {
-    double busy = 0, all = 0, own = 0;  // clock ticks
+    double busy = 0, all = 0, own = 0;  // in clock ticks; own: this process and its ended children
   };
   static std::optional<Ticks> read();
   std::optional<Ticks> before_;
@@ -62,8 +61,8 @@ class TimingLock {
  public:
   static constexpr const char* kFile = "/tmp/farcull-times.lock";
 
-  /// Throws Error naming the process that holds the lock, or naming the path if the file cannot be
-  /// opened. path: the lock file; tests use another file.
+  /// path: the lock file; tests use another file. Throws Error if the file cannot be opened, or if
+  /// another process holds the lock; the message then names that process.
   explicit TimingLock(const std::string& path = kFile);
   ~TimingLock();
   TimingLock(const TimingLock&) = delete;

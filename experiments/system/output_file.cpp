@@ -1,5 +1,5 @@
-// Writes a new file beside the path and renames the file. Signal handlers allocate no memory and
-// take no lock.
+// Writes a new file in the folder of the destination, then renames the file to the destination.
+// Signal handlers allocate no memory and take no lock.
 #include "experiments/system/output_file.h"
 
 #include <fcntl.h>
@@ -21,9 +21,9 @@ namespace farcull {
 
 namespace {
 
-// `message` is what the signal handler prints. It is made beforehand, since a handler must not
-// allocate memory. There are two buffers, since the handler may read one buffer while the other
-// buffer is filled.
+// The signal handler prints `message`. The text is prepared beforehand, since a handler must not
+// allocate memory. There are two buffers: the handler may read one buffer while the other buffer is
+// filled.
 std::array<std::array<char, 512>, 2> buffers;
 std::atomic<const char*> message = "farcull: interrupted; no file was written\n";
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -32,7 +32,7 @@ long items_done = 0, items_wanted = 0, files_written = 0;
 const char *items = "", *how_it_ends = "";
 bool on_terminal = false;
 
-// Allocates no memory, since destructors call this function.
+// Allocates no memory, since destructors call this function and must not throw.
 void make_message() {
   std::array<char, 512>& buffer = buffers[message == buffers[0].data() ? 1 : 0];
   const char* const start = on_terminal ? "\r\033[K" : "";
@@ -65,8 +65,8 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// The file that a path leads to. A regular or new file is written under another name and renamed.
-// Other files are `direct`: the text is written to them without renaming.
+// The file that a path names, after links are followed. A regular or new file is written under
+// another name, then renamed. Other files are `direct`: they are written in place.
 struct Target {
   std::string path;
   bool exists = false;
@@ -79,7 +79,7 @@ Target target_of(const std::string& path) {
   struct stat link = {}, status = {};
   target.exists = ::stat(path.c_str(), &status) == 0;
   const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
-  // Links in /dev and /proc, such as /dev/stdout, may lead to a file that another program has open.
+  // A link in /dev or /proc, such as /dev/stdout, may lead to a file that another program has open.
   const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
   target.mode = status.st_mode;
   target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
@@ -96,8 +96,8 @@ std::string folder_of(const std::string& path) {
 // The path of the file that is being written; empty between files.
 char half_written[4096] = "";
 
-// Returns the path of the half-written file for `path`: the same folder and name, with an ending. A
-// name that is too long for the file system is cut, but not within a UTF-8 character.
+// Returns the path of the half-written file for `path`: the same folder and name, with a suffix. If
+// the name is too long for the file system, the name is cut, but not within a UTF-8 character.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
   const std::size_t name = path.rfind('/') + 1;  // 0 if there is no folder
@@ -115,7 +115,7 @@ extern "C" void remove_half_written(int signal) {
 
 }  // namespace
 
-// A file that is being written. The destructor removes the file unless put() renamed it. If a
+// A file that is being written. The destructor removes the file unless put() renamed the file. If a
 // signal ends the program, the signal handler removes the file. Only one object of this class may
 // exist at a time.
 class HalfWritten {
@@ -150,7 +150,7 @@ class HalfWritten {
 
 namespace {
 
-// Writes all of the text: from byte `at` of the file on, or at the current position if `at` is
+// Writes the whole text: from byte `at` of the file on, or at the current position if `at` is
 // negative. Returns 0 or the errno of the first failure.
 int write_all(int file, const std::string& text, long long at) {
   for (std::size_t done = 0; done < text.size();) {
@@ -273,7 +273,7 @@ GrowingOutput::~GrowingOutput() {
   try {
     finish();
   } catch (const Error&) {
-    // A destructor must not throw. Only a stream may lack its end; a regular file has its end.
+    // A destructor must not throw. A regular file is already complete; a stream may lack its end.
   }
   if (file_ >= 0) ::close(file_);
 }
@@ -304,7 +304,7 @@ void GrowingOutput::add(const std::string& text, const std::string& end) {
     return;
   }
   if (const int failure = write_all(file_, text + end, kept_)) {
-    // Restores the previous end. The file had these bytes before, so even a full disk has room.
+    // Restores the previous end. The file had these bytes before, so the disk has room for them.
     (void)write_all(file_, end_, kept_);
     (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
     refuse(path_, failure);
@@ -328,9 +328,9 @@ void GrowingOutput::finish() {
 void prepare_output() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // If a standard stream is closed, the next opened file would get its number, and output for the
-  // stream would go into that file. So /dev/null gets the number, in a mode in which every use of
-  // the stream fails.
+  // If a standard stream is closed, the next opened file would get the descriptor of the stream,
+  // and output for the stream would go into that file. So /dev/null takes the descriptor. It is
+  // opened in the mode that makes every use of the stream fail.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0)
       (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);

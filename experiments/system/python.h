@@ -1,4 +1,4 @@
-// Finds and starts Python, in which parts of the program are written.
+// Finds and starts a Python interpreter. Parts of the program are written in Python.
 #pragma once
 
 #include <unistd.h>
@@ -13,8 +13,8 @@
 
 namespace farcull {
 
-/// Returns the Python to run: $FARCULL_PYTHON if set, else /usr/bin/python3, since Debian's
-/// packages are for it, else python3 in PATH.
+/// Returns the interpreter to run: $FARCULL_PYTHON if set, else /usr/bin/python3 if this file
+/// exists (Debian installs Python packages for it), else python3 from PATH.
 inline std::string python() {
   const char* const named = std::getenv("FARCULL_PYTHON");
   constexpr const char* kUsual = "/usr/bin/python3";

@@ -1,4 +1,4 @@
-// Breaks lines and lays out tables. Widths count characters of UTF-8.
+// Breaks lines and lays out tables. Widths count UTF-8 characters.
 #include "experiments/system/text_table.h"
 
 #include <unistd.h>
@@ -10,7 +10,7 @@ namespace farcull {
 
 namespace {
 
-// Returns the number of characters of a text in UTF-8: its bytes without continuation bytes.
+// Returns the number of UTF-8 characters: the bytes that are not continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](unsigned char c) { return (c & 0xc0) != 0x80; }));

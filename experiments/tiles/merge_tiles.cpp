@@ -1,4 +1,4 @@
-// Merges sorted lists with a priority queue of the lists' next lines.
+// Merges sorted lists. A priority queue holds the next line of each list.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kAgain = "run the tile again";
 
-// A record, and the values of the record that the merge uses.
+// The record of a tile (JSON), and the values of the record that the merge uses.
 struct Source {
   std::string path;
   Json json;
@@ -34,8 +34,8 @@ struct Source {
               "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote");
 }
 
-// Returns the value at a JSON pointer such as /tile/k. Throws Error if the value is missing or has
-// another type.
+// Returns the value at a JSON pointer such as /tile/k. Throws Error if there is no such value, or
+// if the value has another type.
 template <class Value>
 Value at(const Source& source, const char* place) {
   try {
@@ -78,7 +78,7 @@ Source read_record(const std::string& path) {
   return out;
 }
 
-// Throws Error if two records differ in the scene or in the question.
+// Throws Error if two records differ in the scene, the tiles, the method or the options.
 void require_alike(const Source& first, const Source& other) {
   const std::pair<const char*, const char*> places[] = {
       {"/scene", "is of another scene"},
@@ -140,8 +140,8 @@ class List {
     if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
   }
 
-  // Reads the next row. Returns false at the end. Throws Error at the end if the list is not the
-  // list that the record describes.
+  // Reads the next row. Returns false at the end of the list. There, throws Error if the number of
+  // rows or the hash of the list is not that of the record.
   bool next() {
     const std::array<std::uint64_t, 4> before = key_;
     if (!next_line()) {
@@ -153,7 +153,7 @@ class List {
     if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
     return true;
   }
-  // Returns the object and the triangle of a, then those of b.
+  // Returns the numbers of object a, triangle a, object b and triangle b, in this order.
   const std::array<std::uint64_t, 4>& key() const { return key_; }
   const std::string& line() const { return line_; }
 

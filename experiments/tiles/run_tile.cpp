@@ -1,5 +1,5 @@
 // Cuts the scene into tiles, gathers the triangles of one tile, and runs the method on these
-// triangles. A filter removes candidates that belong to other tiles.
+// triangles. Then removes the candidate pairs that belong to other tiles.
 #include "experiments/tiles/run_tile.h"
 
 #include <fmt/format.h>
@@ -24,8 +24,8 @@ namespace {
 constexpr std::size_t kSample = 65536;
 
 // Samples the boxes of triangles. The sample holds the triangles whose hashed number ends with at
-// least k zero bits. k grows by one whenever the sample becomes too large. So the sample depends
-// only on the scene, not on the parts in which the scene is read.
+// least k zero bits. If the sample becomes too large, k grows by one. So the sample depends only on
+// the scene, not on the parts in which the scene is read.
 class Sampler {
  public:
   void add(std::uint64_t number, const Box& box) {
@@ -48,8 +48,8 @@ class Sampler {
   std::vector<std::pair<std::uint64_t, Box>> sample_;
 };
 
-// Returns how many cuts are at most `at` + `reach`, with the rounding of meets(). With reach 0, the
-// result is the index of the tile that contains `at`.
+// Returns how many cuts are at most `at` + `reach`, rounded as in meets(). With reach 0, the result
+// is the index of the tile that contains `at`.
 std::size_t tile_at(const Cuts& cuts, double at, double reach = 0) {
   const auto end =
       std::ranges::partition_point(cuts.at, [&](double cut) { return cut - at <= reach; });
@@ -85,9 +85,9 @@ class Loads {
 };
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMost = std::size_t{1} << 31;  // limit of triangles and objects in a tile
+constexpr std::size_t kMost = std::size_t{1} << 31;  // triangles + objects in a tile must be fewer
 
-// Collects the triangles of one tile. Renumbers vertices part by part, as parts share no vertex.
+// Collects the triangles of one tile. Renumbers vertices per part, as parts share no vertex.
 class Gathering {
  public:
   Gathering(const Census& census, const Tile& tile)
@@ -121,8 +121,8 @@ class Gathering {
                 "do not change its files while a run reads them");
   }
 
-  // Throws Error if an object has another size_word() than at the first reading of the scene. The
-  // hash already includes the words of the first reading (begun_hash()).
+  // Throws Error if size_word() of the object differs from the first reading of the scene. These
+  // words need not be hashed again: begun_hash() already includes them.
   void require_known(const Object& object) {
     if (series_ == census_.sizes.size() || census_.sizes[series_].first != size_word(object))
       changed();
@@ -179,14 +179,14 @@ class Gathering {
   Tile tile_;
   Fnv1a hash_, faces_;
   TileScene out_;
-  std::size_t series_ = 0;       // index in census_.sizes: the series of the next object
-  std::uint64_t of_series_ = 0;  // objects before the next object in this series
+  std::size_t series_ = 0;       // index in census_.sizes for the next object
+  std::uint64_t of_series_ = 0;  // number of earlier objects in this series
   std::uint64_t objects_ = 0;
-  std::vector<std::uint32_t> vertex_;  // for each vertex of the part: its number in the tile
+  std::vector<std::uint32_t> vertex_;  // per vertex of the part: number in the tile, or kNone
 };
 
-// Converts pairs of objects from numbers in the whole scene to numbers in the tile's scene. Leaves
-// out pairs with an object that has no triangle in the tile.
+// Converts object numbers of the whole scene to object numbers of the tile. Omits pairs with an
+// object that has no triangle in the tile.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
   const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
     const auto found = std::ranges::lower_bound(numbers.objects, object);
@@ -211,11 +211,11 @@ double peak_memory_mib() {
 
 std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
 
-// Returns null if the tile has no end on this side.
+// Returns JSON null if the tile is unbounded on this side.
 Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
 
-// Returns a text that identifies the ignored pairs and is the same for all tiles. It hashes numbers
-// of objects, since two objects may have the same name.
+// Returns a text that identifies the ignored pairs and is the same for all tiles. The text has a
+// hash of object numbers, since two objects may have the same name.
 std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   if (ignored.empty()) return "";
   Fnv1a hash;
@@ -226,7 +226,7 @@ std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   return fmt::format("{}, {}", counted(ignored.size(), "pair", "pairs"), hash.hex());
 }
 
-// Writes a triangle of the part with its numbers in the whole scene.
+// Sets place["object"] and place["triangle"] to the numbers of the triangle in the whole scene.
 void renumber(const TileScene& part, const std::vector<std::uint32_t>& owner,
               std::uint32_t triangle, Json& place) {
   place["object"] = part.numbers.objects[owner[triangle]];
@@ -383,7 +383,7 @@ std::string tile_list(const TileRun& run, PairColumns columns) {
          pairs_rows(run.part.scene, run.record, "", columns);
 }
 
-// ---- what a run on a tile, and a plan of tiles, print and record ----
+// ---- text and JSON about a tile ----
 
 std::string interval_text(const Tile& tile) {
   const bool first = tile.from == -HUGE_VAL, last = tile.to == HUGE_VAL;
@@ -443,8 +443,8 @@ Json tile_json(const TileRun& run, const TileList* list) {
 }
 
 NothingToTest nothing_to_test(const Census& census) {
-  // Calls nothing_to_test() for a smaller scene, which has the same answer. The smaller scene has
-  // at most two objects with triangles, and one object without triangles.
+  // Calls nothing_to_test() for a smaller scene that has the same answer. The smaller scene has at
+  // most two of the objects with triangles, and one of the objects without triangles.
   Scene few;
   std::uint32_t with = 0, without = 0;
   for (const auto& [word, times] : census.sizes) {

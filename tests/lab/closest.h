@@ -10,9 +10,7 @@
 
 namespace farcull::closest_reference {
 
-using reference::Rational;
-using reference::RationalPoint;
-using reference::Triangle;
+using reference::Rational, reference::RationalPoint, reference::Triangle;
 using Integer = mpz_class;
 using Point = reference::Vector<Integer>;
 

@@ -12,8 +12,7 @@ using rational::Q;
 using Z = mpz_class;
 using Corners = near_lab::Corners<Z>;
 
-using near_lab::exact;
-using near_lab::scale_of;
+using near_lab::exact, near_lab::scale_of;
 inline Q squared_distance(const auto& a, const auto& b) {
   return near_lab::squared_distance_of(a, b);
 }

@@ -8,8 +8,7 @@
 namespace farcull {
 namespace {
 
-using minkowski_line::Answer;
-using rational::Random;
+using minkowski_line::Answer, rational::Random;
 
 constexpr int kSide = 256;
 

@@ -22,15 +22,9 @@ namespace glsl::exact_without_widening {
 
 namespace {
 
-using minkowski_line::Answer;
-using minkowski_line::answer;
-using minkowski_line::Kernel;
-using minkowski_line::Line;
-using minkowski_line::Real;
-using minkowski_line::Tally;
-using minkowski_line::Weights;
-using rational::Q;
-using rational::Random;
+using minkowski_line::Answer, minkowski_line::answer, minkowski_line::Kernel, minkowski_line::Line,
+    minkowski_line::Real, minkowski_line::Tally, minkowski_line::Weights, rational::Q,
+    rational::Random;
 using namespace minkowski_cases;
 
 const Kernel kFloat = minkowski_fattener().solid.interval;

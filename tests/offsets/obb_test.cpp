@@ -21,11 +21,8 @@ namespace glsl::obb_without_widening {
 
 namespace {
 
-using box_line::adversarial;
-using box_line::exact_interval;
-using box_line::outer_interval;
-using rational::Q;
-using rational::Random;
+using box_line::adversarial, box_line::exact_interval, box_line::outer_interval, rational::Q,
+    rational::Random;
 using Points = std::vector<Vec3>;
 using Kernel = bool (*)(float cx, float cy, const Solid& solid, float& entry, float& exit);
 

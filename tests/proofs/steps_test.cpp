@@ -19,8 +19,7 @@ namespace farcull::proofs {
 namespace {
 
 namespace kernel = glsl::proved;
-using glsl::vec2;
-using glsl::vec4;
+using glsl::vec2, glsl::vec4;
 
 constexpr SlabConstants kSlab = {8 * 0x1p-23, 4 * 0x1p-23, 1e-30f};
 constexpr int kCases = 100000;

@@ -11,12 +11,8 @@
 namespace farcull {
 namespace {
 
-using closest_reference::is_rounded;
-using closest_reference::is_rounded_root;
-using reference::kTiny;
-using reference::Rational;
-using reference::RationalPoint;
-using reference::Triangle;
+using closest_reference::is_rounded, closest_reference::is_rounded_root, reference::kTiny,
+    reference::Rational, reference::RationalPoint, reference::Triangle;
 
 Triangle whole(RandomDraws& random, int most) {
   Triangle t;

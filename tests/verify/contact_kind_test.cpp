@@ -16,12 +16,8 @@
 namespace farcull {
 namespace {
 
-using rational::Random;
-using reference::kMax;
-using reference::kPermutations;
-using reference::kTiny;
-using reference::reordered;
-using reference::Triangle;
+using rational::Random, reference::kMax, reference::kPermutations, reference::kTiny,
+    reference::reordered, reference::Triangle;
 
 /// The kind and the shape under every order of arguments and corners; the shape of the first.
 ContactShape expect_kind(const std::string& expected, int dimension, const Triangle& a,

@@ -10,12 +10,8 @@
 namespace farcull {
 namespace {
 
-using reference::kMax;
-using reference::kPermutations;
-using reference::kTiny;
-using reference::reordered;
-using reference::text;
-using reference::Triangle;
+using reference::kMax, reference::kPermutations, reference::kTiny, reference::reordered,
+    reference::text, reference::Triangle;
 
 double up(double x) { return std::nextafter(x, kMax); }
 double down(double x) { return std::nextafter(x, -kMax); }

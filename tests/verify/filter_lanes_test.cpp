@@ -10,8 +10,7 @@
 namespace farcull {
 namespace {
 
-using hard_pairs::Sharing;
-using reference::Triangle;
+using hard_pairs::Sharing, reference::Triangle;
 
 constexpr std::array kSharings = {Sharing::none, Sharing::vertex, Sharing::edge};
 

@@ -10,16 +10,9 @@
 namespace farcull {
 namespace {
 
-using hard_pairs::coplanar_and_long;
-using hard_pairs::extreme;
-using hard_pairs::finite;
-using hard_pairs::generators;
-using hard_pairs::Make;
-using hard_pairs::nearly_coplanar;
-using hard_pairs::point;
-using hard_pairs::Sharing;
-using hard_pairs::slivers_on_an_edge;
-using reference::Triangle;
+using hard_pairs::coplanar_and_long, hard_pairs::extreme, hard_pairs::finite,
+    hard_pairs::generators, hard_pairs::Make, hard_pairs::nearly_coplanar, hard_pairs::point,
+    hard_pairs::Sharing, hard_pairs::slivers_on_an_edge, reference::Triangle;
 
 struct Tally {
   std::array<int, 3> answers{};  // in the order of Triage

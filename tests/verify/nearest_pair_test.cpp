@@ -7,8 +7,7 @@
 namespace farcull {
 namespace {
 
-using reference::Rational;
-using reference::Triangle;
+using reference::Rational, reference::Triangle;
 
 std::vector<TrianglePair> pairs_between(const Scene& scene) {
   std::vector<TrianglePair> pairs;

@@ -10,9 +10,7 @@
 namespace farcull {
 namespace {
 
-using reference::kPermutations;
-using reference::reordered;
-using reference::Triangle;
+using reference::kPermutations, reference::reordered, reference::Triangle;
 
 /// In all orders of corners and triangles, and alone in a scene, where the filter decides first.
 void expect_beyond(bool expected, const Triangle& a, const Triangle& b) {

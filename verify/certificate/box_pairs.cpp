@@ -1,4 +1,4 @@
-// Trees of boxes over triangles, and the enumeration of the pairs whose boxes meet.
+// Builds trees of boxes over triangles, and enumerates the pairs of triangles whose boxes meet.
 #include "verify/certificate/box_pairs.h"
 
 #include <algorithm>
@@ -26,15 +26,15 @@ BoundsTree::BoundsTree(const Scene& scene) : order(scene.triangles.size()) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// The tree divides at the median of the centres, along the axis in which they spread most. Other
-// divisions would change only the time of a query, not its answer: a query visits the children of
-// every node whose box overlaps the box of the query.
+// Divides at the median of the centres, along the axis in which the centres spread most. Other
+// divisions would change only the time of a query, not its result: a query visits the children of
+// every node whose box overlaps the query's box.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;
   const auto to = from + count;
   Node node{.bounds = bounds[*from], .first = first, .count = count};
-  Bounds centres;  // the box of the centres; centre() halves first, since lo + hi may overflow
+  Bounds centres;  // box of the centres; centre() halves first, since lo + hi may overflow
   const auto centre = [&](std::uint32_t t, int k) {
     return bounds[t].lo[k] / 2 + bounds[t].hi[k] / 2;
   };
@@ -66,7 +66,7 @@ void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   nodes[index].after = static_cast<std::uint32_t>(nodes.size());
 }
 
-// ---- a tree over all triangles; each triangle asks it for later ones whose boxes it meets ----
+// ---- BoxPairs: one tree over all triangles, and one query of the tree per triangle ----
 
 BoxPairs::BoxPairs(const Scene& scene, double clearance, const Tile& tile)
     : scene_(scene), clearance_(clearance), tile_(tile), tree_(scene) {
@@ -74,8 +74,8 @@ BoxPairs::BoxPairs(const Scene& scene, double clearance, const Tile& tile)
   if (count > 0) tree_.add(0, count);
 }
 
-// If x and y do not meet, no box inside x meets a box inside y. Rounding is monotone, so the
-// rounded gaps between the inner boxes are at least as large.
+// If x and y do not meet, no box inside x meets a box inside y: a gap between inner boxes is at
+// least as large, and rounding is monotone.
 bool BoxPairs::meet(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const {
   for (int k = 0; k < 3; ++k) {
     if (clearance_ == 0) {
@@ -95,7 +95,7 @@ bool BoxPairs::next(std::vector<TrianglePair>& pairs, std::size_t enough) {
              scene_.objects[object].triangle_count;
     };
     while (triangle_ >= end_of(object_)) ++object_;
-    // Objects are contiguous and ascending. So the partners of triangle_ have indices >= later.
+    // Triangles are sorted by object. So the partners of triangle_ have indices >= `later`.
     const std::uint64_t later =
         scene_.objects[object_].self ? std::uint64_t{triangle_} + 1 : end_of(object_);
     const BoundsTree::Bounds& bounds = tree_.bounds[triangle_];

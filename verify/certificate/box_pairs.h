@@ -1,4 +1,4 @@
-// Enumerates the pairs of triangles that a certificate is about, in the certificate's order.
+// Enumerates the pairs of triangles that a certificate covers, in the order of the certificate.
 //
 // This enumeration shares no code with core's join, CGAL's join or the tree of verify/accounting.
 // For each triangle in order, it finds the later triangles that form a pair with this triangle. So
@@ -16,8 +16,8 @@
 
 namespace farcull {
 
-/// Trees of boxes over triangles. Boxes are minima and maxima of the coordinates as given, so
-/// nothing is rounded.
+/// Trees of boxes over triangles. The bounds of a box are minima and maxima of the given
+/// coordinates, so nothing is rounded.
 struct BoundsTree {
   struct Bounds {
     std::array<double, 3> lo, hi;
@@ -26,21 +26,21 @@ struct BoundsTree {
   /// last node below the left child.
   struct Node {
     Bounds bounds;
-    std::uint32_t first_triangle = 0;  // the least index of a triangle below the node
-    std::uint32_t last_triangle = 0;   // the largest index of a triangle below the node
+    std::uint32_t first_triangle = 0;  // least triangle index below the node
+    std::uint32_t last_triangle = 0;   // largest triangle index below the node
     std::uint32_t first = 0;           // index into BoundsTree::order
     std::uint32_t count = 0;
-    std::uint32_t after = 0;  // the first later node that is not below this node
+    std::uint32_t after = 0;  // index of the first later node that is not below this node
   };
 
-  /// Computes the boxes of all triangles; add() makes the nodes. Precondition: validate() accepts
-  /// the scene.
+  /// Computes the boxes of all triangles. The nodes are made by add(). Precondition: validate()
+  /// accepts the scene.
   explicit BoundsTree(std::span<const std::array<Vec3, 3>> triangles);
   explicit BoundsTree(const Scene& scene);
 
   static Bounds bounds_of(const std::array<Vec3, 3>& corners);
 
-  /// Appends the nodes of a binary tree over the triangles first .. first + count - 1, count > 0.
+  /// Appends the nodes of a binary tree over order[first] to order[first + count - 1], count > 0.
   void add(std::uint32_t first, std::uint32_t count);
 
   bool is_leaf(std::uint32_t node) const { return nodes[node].after == node + 1; }
@@ -62,8 +62,8 @@ class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene, double clearance = 0, const Tile& tile = {});
 
-  /// Replaces `pairs` by the next pairs: at least `enough`, or all that are left; all pairs (a, b)
-  /// of a triangle a come at once. After the last pair, returns false and empties `pairs`.
+  /// Replaces `pairs` by the next pairs: at least `enough` pairs, or all remaining pairs. All pairs
+  /// (a, b) with the same a come at once. After the last pair, empties `pairs` and returns false.
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:
@@ -73,8 +73,8 @@ class BoxPairs {
   double clearance_;
   Tile tile_;
   BoundsTree tree_;
-  std::uint32_t object_ = 0;    // the object of triangle_
-  std::uint32_t triangle_ = 0;  // the next triangle whose partners are sought
+  std::uint32_t object_ = 0;    // object of triangle_
+  std::uint32_t triangle_ = 0;  // next triangle whose partners are sought
 };
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Makes certificates. The chosen directions need not be trusted, since the checker verifies them.
+// Makes certificates. The directions need not be trusted, since the checker verifies them.
 #include "verify/certificate/certificate.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace farcull {
 
-// Objects with consecutive indices form one range.
+// Consecutive objects that are not `self` form one range.
 
 NotAsked not_asked(const Scene& scene) {
   NotAsked out;
@@ -60,11 +60,11 @@ std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, double cl
   return kept ? kKept : kMeets;
 }
 
-/// Tells which pairs of a sorted enumeration are in a given sorted list. The caller passes the
-/// pairs of the enumeration to contains(), one after the other.
+/// Tells which pairs of a sorted enumeration are in a given sorted list. The caller passes each
+/// enumerated pair, in order, to contains().
 class Marked {
  public:
-  /// pairs: the given list. others: whether the list may have pairs that are not enumerated; if
+  /// pairs: the given list. others: true if the list may have pairs that are not enumerated; if
   /// false, such a pair is an error.
   Marked(std::span<const TrianglePair> pairs, const char* name, bool others)
       : pairs_(pairs), name_(name), others_(others) {
@@ -102,8 +102,8 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   const FloatingPointGuard guard;
   if (!(clearance >= 0 && std::isfinite(clearance)))
     throw std::logic_error("make_certificate: a clearance must be finite and not negative");
-  constexpr std::size_t kBlock = 1 << 16;   // about this many pairs are decided at a time
-  constexpr std::size_t kPerThread = 1024;  // fewer pairs are not worth a thread
+  constexpr std::size_t kBlock = 1 << 16;   // approximate number of pairs per block
+  constexpr std::size_t kPerThread = 1024;  // fewer pairs do not justify a thread
   Certificate out;
   out.scene = whole ? whole->key : key_of(scene);
   out.clearance = clearance;

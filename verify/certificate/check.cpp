@@ -1,5 +1,5 @@
-// The checker of certificates. A verdict can be trusted if this file, box_pairs, integer_pair and
-// pair_list are correct.
+// The checker of certificates. A verdict can be trusted if this file and the files of verify/ that
+// it includes are correct.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,11 +19,11 @@ namespace {
 
 enum class EvidenceFault : std::uint8_t {
   as_claimed,
-  // These findings leave the certificate unproved:
+  // These faults leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but the direction does not separate it
-  not_neighbours,   // neighbours meet only in their shared part, but the byte does not say so
+  not_neighbours,   // neighbours meet only in their shared part, but the byte has another meaning
   no_evidence,      // the byte has no meaning
-  // These findings refute the certificate:
+  // These faults refute the certificate:
   culled_meets,
   meets,       // a kept pair meets, but is claimed to be disjoint
   separated,   // the pair is disjoint, but is claimed to meet
@@ -44,8 +44,8 @@ struct Decision {
 }
 
 /// Decides the pair without trusting the byte. The pair is disjoint if a direction separates it.
-/// The pair meets if a point lies in both triangles, or if two points are within the clearance.
-/// meets_beyond_shared() decides neighbours.
+/// The pair meets if a point lies in both triangles, or if two points, one of each triangle, are
+/// within the clearance. For neighbours, meets_beyond_shared() decides.
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);
@@ -146,7 +146,7 @@ std::string wrong_list(const std::string& claimed, const std::string& found) {
                                 claimed + ", and that of the pairs that meet is " + found;
 }
 
-/// Counts the decided pairs, and remembers the pair to be named in the result.
+/// Counts the decided pairs, and stores the pair that the result names.
 class Tally {
  public:
   explicit Tally(bool clearance) : clearance_(clearance) {}
@@ -162,7 +162,7 @@ class Tally {
     if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == EvidenceFault::as_claimed) return;
-    // The result names the first pair that refutes the certificate. If no pair refutes it, the
+    // The result names the first pair that refutes the certificate. If there is no such pair, the
     // result names the first pair that is not proved.
     const bool refuted = decision.finding >= EvidenceFault::culled_meets;
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
@@ -171,7 +171,7 @@ class Tally {
     result_.reason = sentence(decision.finding, byte, clearance_);
   }
 
-  /// Returns the result. Call it after all pairs were added.
+  /// Returns the result. Precondition: all pairs were added.
   CheckResult finish(const Certificate& certificate, const Scene& scene, const WholeScene* whole,
                      double decide_ms) {
     result_.decide_ms = decide_ms;
@@ -199,7 +199,7 @@ CheckResult not_proved(std::string reason) {
 
 CheckResult decide_all(const Certificate& certificate, const Scene& scene,
                        const WholeScene* whole) {
-  constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time; there may be many millions
+  constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time, to limit memory
   constexpr std::size_t kPerThread = 1024;
   BoxPairs enumeration(scene, certificate.clearance, whole ? whole->tile : Tile());
   const std::vector<std::uint32_t> owner = owners(scene);
@@ -235,7 +235,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene,
   return tally.finish(certificate, scene, whole, decide_ms);
 }
 
-// Returns why the certificate is of another scene; empty if the keys differ at most in the name.
+// Returns why the certificate is of another scene; empty if the keys are equal but for the name.
 std::string other_scene(const Certificate::SceneKey& claimed, const Certificate::SceneKey& found) {
   const auto differ = [](const std::string& what, const std::string& one,
                          const std::string& other) {

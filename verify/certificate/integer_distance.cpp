@@ -1,5 +1,5 @@
-// Each pair of triangles is scaled to integers once. The integers are GMP's, since the square of a
-// distance mostly has many digits.
+// Scales each pair of triangles to integers once. Uses the big integers of GMP, since the square of
+// a distance usually has many digits.
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
@@ -24,9 +24,9 @@ namespace {
 
 constexpr int kFeatures = 7, kFirstEdge = 3, kFace = 6;
 
-/// Constructs the only points of feature `of_a` of triangle `a` and feature `of_b` of triangle `b`
-/// that can be nearest if no earlier pair of features has nearest points. Returns false if the two
-/// features have no such points.
+/// Constructs the only points of feature `of_a` of `a` and feature `of_b` of `b` that can be
+/// nearest points, if no earlier pair of features has nearest points. Returns false if there are no
+/// such points.
 bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                int of_a, int of_b) {
   if (of_a < kFirstEdge) {
@@ -44,13 +44,13 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const 
 }
 
 // is_within() counts the crossings of a mesh and a ray from a point. The ray has the direction of
-// the first axis. It starts at the point moved by e along the second axis and by e^2 along the
+// the first axis. The ray starts at the point moved by e along the second axis and by e^2 along the
 // third axis, where e > 0 is infinitely small. So the ray meets no edge, and one ray is enough. The
-// sign of a polynomial in e is that of its coefficient of lowest degree that is not 0.
+// sign of a polynomial in e is the sign of its nonzero coefficient of lowest degree.
 
 /// Returns on which side of the ray the edge from p to q passes: the sign of the first coordinate
 /// of (p - o) x (q - o), o = (0, e, e^2). p and q are relative to the point. Returns 0 only if p
-/// and q differ in no coordinate but the first.
+/// and q have the same second and the same third coordinate.
 int side_of_edge(const BigVector& p, const BigVector& q) {
   const int sign = cmp(mpz_class(p[1] * q[2]), mpz_class(p[2] * q[1]));
   if (sign != 0) return sign;
@@ -66,7 +66,7 @@ mpz_class determinant(const std::array<BigVector, 3>& t) {
   return out;
 }
 
-/// Returns false if the box of the triangle is beside the ray from x or behind x, so that the ray
+/// Returns false if the box of the triangle lies beside the ray from x or behind x, so that the ray
 /// cannot cross the box. The comparisons are exact.
 bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   const auto& [p, q, r] = t;
@@ -88,10 +88,10 @@ std::optional<bool> is_within(const Scene& scene, const Object& object, const Ve
     const int side = side_of_edge(pair.b[0], pair.b[1]);
     if (side == 0 || side_of_edge(pair.b[1], pair.b[2]) != side ||
         side_of_edge(pair.b[2], pair.b[0]) != side) {
-      continue;  // the ray passes by t
+      continue;  // the ray misses t
     }
-    // The ray meets the plane of t at determinant / n_x, where n is a normal; n_x has the sign
-    // `side`.
+    // The ray meets the plane of t at distance determinant / n_x from x. Here n is a normal of t,
+    // and the sign of n_x is `side`.
     const int ahead = sgn(determinant(pair.b));
     if (ahead == 0) return std::nullopt;
     if (ahead != side) continue;
@@ -133,8 +133,8 @@ IntegerSurface mesh_of(const Scene& scene, const Object& object) {
   return oriented ? IntegerSurface::oriented : IntegerSurface::closed;
 }
 
-/// Returns one corner of each connected part of the mesh. Triangles that share a vertex index,
-/// directly or through other triangles, are in one part.
+/// Returns one corner of each connected part of the mesh. Two triangles are in one part if they
+/// share a vertex index, directly or through a chain of triangles.
 std::vector<Vec3> corner_of_each_part(const Scene& scene, const Object& object) {
   const auto first = scene.triangles.begin() + object.first_triangle;
   const auto last = first + object.triangle_count;
@@ -187,8 +187,8 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
   const ScaledPair pair = scaled(a, b);
   for (int of_a = 0; of_a < kFeatures; ++of_a) {
     for (int of_b = 0; of_b < kFeatures; ++of_b) {
-      // The construction is not trusted: the points count only if they lie in the triangles and are
-      // proved nearest.
+      // The construction is not trusted: the points count only if they lie in the triangles and
+      // scalar products prove that they are nearest.
       if (!construct(on_a, on_b, pair.a, pair.b, of_a, of_b) ||
           !on_a.is_nearest(on_b, pair.a, pair.b) || !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b))
         continue;

@@ -1,5 +1,5 @@
-// Scales a pair of triangles to integers once. 128-bit integers decide the pair if the coordinates
-// are short enough and there is no clearance; otherwise GMP's integers do.
+// Scales a pair of triangles to integers once. Uses 128-bit integers if the coordinates are short
+// enough and there is no clearance; otherwise the big integers of GMP.
 #include "verify/certificate/integer_pair.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       top = std::max(top, x.exponent + bit_length(x.mantissa < 0 ? -Wide{x.mantissa} : x.mantissa));
     }
   }
-  constexpr int kWidest = 125;  // most bits of a coordinate, so that a difference fits a Wide
+  constexpr int kWidest = 125;  // bits of a coordinate; a difference then fits a Wide
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (corners_[0][i] != corners_[1][j]) continue;
@@ -117,9 +117,9 @@ IntegerPair::Big& IntegerPair::big() {
   return *big_;
 }
 
-/// Computes the direction and returns use(scratch, a, b), in integers that are long enough.
+/// Computes the direction and returns use(scratch, a, b). Chooses integers that are long enough.
 bool IntegerPair::with_direction(int direction, double clearance, const auto& use) {
-  // Most clearances are decimal fractions. Scaled with such a clearance, the integers are too long.
+  // Most clearances are decimal fractions. Scaling such a clearance makes the integers too long.
   if (clearance == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
@@ -149,7 +149,7 @@ std::optional<int> IntegerPair::separating_direction() {
 bool IntegerPair::has_common_point() {
   thread_local PointSearch search;
   const Big& pair = big();
-  // The constructions are not trusted: only membership in both triangles counts.
+  // The constructions are not trusted: a point counts only if it lies in both triangles.
   return any_point(search, pair.a, pair.b,
                    [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); });
 }
@@ -168,7 +168,7 @@ bool IntegerPair::is_within() {
 }
 
 bool IntegerPair::meets_beyond_shared() {
-  // The shared corners of a; if there are fewer than three, the last one is repeated.
+  // The shared corners of a; if there are fewer than three, the last corner is repeated.
   std::array<int, 3> shared = {-1, -1, -1};
   std::size_t count = 0;
   for (int i = 0; i < 3; ++i) {
@@ -179,8 +179,8 @@ bool IntegerPair::meets_beyond_shared() {
 
   thread_local PointSearch search;
   const bool all = shared_[0] == 7 && shared_[1] == 7;
-  // The shared part is the hull of the shared corners, unless this hull is a triangle with an
-  // interior.
+  // If the triangles are equal and not degenerate, they share their inside, so they meet. Otherwise
+  // the shared part is the hull of the shared corners.
   if (all && search.is_triangle(big().a)) return true;
   for (int direction = 0; direction < 11; ++direction) {
     const bool only_shared =
@@ -196,7 +196,7 @@ bool IntegerPair::meets_beyond_shared() {
   });
 }
 
-// Tries all 38 directions in doubles. Rounding errors do no harm: the caller proves the direction.
+// Tries the 38 directions in doubles. Rounding errors do no harm: the caller proves the result.
 
 int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   constexpr double kClear = 1e-6;

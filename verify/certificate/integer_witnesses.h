@@ -1,5 +1,5 @@
-// Directions that prove two triangles disjoint, and points that prove that they meet or how near
-// they are. Only integer_pair.cpp and integer_distance.cpp include this file.
+// Directions that prove that two triangles are disjoint, and points that prove that two triangles
+// meet or are near. Only integer_pair.cpp and integer_distance.cpp include this file.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,11 @@
 
 namespace farcull::integer {
 
-// The 38 directions of a pair of triangles, and what a direction proves. The idea is from
-// Gottschalk, Lin, Manocha, "OBBTree" (1996). docs/certificate.md proves that one of the 38
-// directions separates any two disjoint triangles, even degenerate ones.
+// The 38 directions of a pair of triangles. The idea is from Gottschalk, Lin, Manocha, "OBBTree"
+// (1996). docs/certificate.md proves that one of the 38 directions separates any two disjoint
+// triangles, even degenerate ones.
 
-/// The intermediate results of a test. They are reused between tests, since allocating GMP's
-/// integers anew takes time.
+/// Variables for intermediate results. They are reused, since allocating GMP integers takes time.
 template <class Integer>
 struct Scratch {
   Vector<Integer> e, f, w, d;
@@ -74,9 +73,9 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// True iff gap^2 / |d|^2 > over / under for the direction d = s.d (with or_as_far: >=). Then the
-/// square of the distance is above over / under as well, since no gap is longer than the distance.
-/// Preconditions: has_gap() was true for s, over >= 0, under > 0.
+/// True iff gap^2 / |d|^2 > over / under for the direction d = s.d (with or_as_far: >=). If true,
+/// the squared distance exceeds over / under as well, since |d| times the distance is at least the
+/// gap. Preconditions: has_gap() was true for s, over >= 0, under > 0.
 inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
                         bool or_as_far) {
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
@@ -89,12 +88,12 @@ inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_
   return or_as_far ? s.w[1] >= s.w[2] : s.w[1] > s.w[2];
 }
 
-/// True iff the direction d = s.d proves that a and b share no more than their shared part.
-/// shared_a: bit i is set if corner i of a equals a corner of b. shared_b: likewise for corners of
-/// b. The proof: a plane perpendicular to d has all of a on one side and all of b on the other. So
-/// the triangles meet only in the plane, where each is the hull of its corners in the plane. These
-/// hulls share no more than the shared part if all corners of one hull are shared, or if both hulls
-/// are edges that are not parallel (d is the product of the two edges).
+/// True iff the direction d = s.d proves that a and b share no more than their shared part. Bit i
+/// of shared_a is set if corner i of a equals a corner of b; likewise shared_b for b. The proof: a
+/// plane perpendicular to d has all of a on one side and all of b on the other side. So the
+/// triangles meet only in the plane. There, the part of each triangle is the hull of its corners in
+/// the plane. These hulls share no more than the shared part if all corners of one hull are shared,
+/// or if the hulls are two edges that are not parallel (d is the cross product of these edges).
 template <class Integer>
 bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
                      int direction, unsigned shared_a, unsigned shared_b) {
@@ -103,7 +102,7 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
   const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
   const bool a_below = *a_hi <= *b_lo;
   if (!a_below && !(*b_hi <= *a_lo)) return false;
-  const Integer plane = a_below ? *a_hi : *a_lo;  // where the plane cuts the axis s.d
+  const Integer plane = a_below ? *a_hi : *a_lo;  // value of s.d . x on the plane
   unsigned in_a = 0, in_b = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.on_a[i] == plane) in_a |= 1u << i;
@@ -116,8 +115,8 @@ bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corne
 }
 
 /// Returns how many bits a difference of coordinates may have so that all integers in
-/// make_direction() and has_gap() fit in 127 bits. Let |x| < D = 2^bits for all differences x of
-/// coordinates; coordinates are relative to a's first corner:
+/// make_direction() and has_gap() fit in 127 bits. Coordinates are relative to a's first corner.
+/// Let D = 2^bits, and let |x| < D for all differences x of coordinates:
 ///   corner-corner: |d| < D, |projection| < 3 D^2 < 2^(2 bits + 2)
 ///   cross products: |d| < 2 D^2, |projection| < 6 D^3 < 2^(3 bits + 3)
 ///   perpendiculars: e.e, |w.e| < 3 D^2, |d| < 6 D^3, |projection| < 18 D^4 < 2^(4 bits + 5)
@@ -130,18 +129,18 @@ inline int most_bits(int direction) {
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-/// Constructs points and verifies them. A point is a vector of integers divided by one integer. The
-/// integers are members, since allocating GMP's integers anew takes time.
+/// Constructs and verifies points. A point is a vector of integers divided by one integer. The
+/// integers are members, since allocating GMP integers takes time.
 class PointSearch {
  public:
-  /// corner() and the functions up to foot_on_plane() each construct a point, and return false if
-  /// the point does not exist. The point may be outside both triangles.
+  /// corner() to foot_on_plane() each construct a point, and return false if the point does not
+  /// exist. The point may be outside both triangles.
   bool corner(const BigCorners& t, int i) {
     point_ = t[i];
     scale_ = 1;
     return true;
   }
-  /// Constructs the point in which edge i of s crosses the plane of t, if it is one point.
+  /// Constructs the point where edge i of s crosses the plane of t; false unless there is one.
   bool edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
     make_normal(t);
     edge(u_, s, i);
@@ -150,8 +149,8 @@ class PointSearch {
     dot(scale_, normal_, u_);
     return along(s[i]);
   }
-  /// Constructs the point of edge i of s nearest to the line of edge j of t, unless the edges are
-  /// parallel. If the lines cross, the point is their common point.
+  /// Constructs the point of edge i of s that is nearest to the line of edge j of t, unless the
+  /// edges are parallel. If the lines cross, this is their common point.
   bool edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
     edge(u_, s, i);
     edge(v_, t, j);
@@ -163,8 +162,8 @@ class PointSearch {
     return along(s[i]);
   }
 
-  /// Constructs the foot of the perpendicular from `from` to edge i of t, if the foot is on the
-  /// edge.
+  /// Constructs the foot of the perpendicular from the point `from` to edge i of t, if the foot is
+  /// on the edge.
   bool foot_on_edge(const BigCorners& t, int i, const BigVector& from) {
     edge(u_, t, i);
     minus(w_, from, t[i]);
@@ -172,8 +171,8 @@ class PointSearch {
     dot(scale_, u_, u_);
     return along(t[i]);
   }
-  /// Constructs the foot of the perpendicular from `from` to the plane of t. False if t is
-  /// degenerate.
+  /// Constructs the foot of the perpendicular from the point `from` to the plane of t. Returns
+  /// false if t is degenerate.
   bool foot_on_plane(const BigCorners& t, const BigVector& from) {
     make_normal(t);
     minus(w_, from, t[0]);
@@ -199,8 +198,9 @@ class PointSearch {
 
   /// True iff p, the last point of this search, and q, the last point of `other`, satisfy
   /// (q - p) . (a_i - p) <= 0 and (q - p) . (b_j - q) >= 0 for all corners a_i and b_j. So no point
-  /// of a lies beyond p in the direction from p to q, and no point of b beyond q in the opposite
-  /// direction. If p lies in a and q in b, they are then nearest points (docs/certificate.md).
+  /// of a lies beyond p in the direction from p to q, and no point of b lies beyond q in the
+  /// opposite direction. If p lies in a and q lies in b, they are nearest points
+  /// (docs/certificate.md).
   bool is_nearest(const PointSearch& other, const BigCorners& a, const BigCorners& b) {
     from_to(other);
     for (int i = 0; i < 3; ++i) {
@@ -220,8 +220,8 @@ class PointSearch {
     return true;
   }
 
-  /// Sets over / under, under > 0, to the square of the distance from the last point of this search
-  /// to the last point of `other`. The fraction is not in lowest terms.
+  /// Sets over / under to the squared distance from the last point of this search to the last point
+  /// of `other`; under > 0. The fraction is not in lowest terms.
   void squared_distance(const PointSearch& other, mpz_class& over, mpz_class& under) {
     from_to(other);
     dot(over, w_, w_);
@@ -229,7 +229,7 @@ class PointSearch {
     multiply(under, value_, value_);
   }
 
-  /// The point constructed last, as a vector over an integer > 0.
+  /// The last point is point() / scale(), a vector over an integer > 0.
   const BigVector& point() const { return point_; }
   const mpz_class& scale() const { return scale_; }
 
@@ -239,8 +239,8 @@ class PointSearch {
     return !is_zero(normal_);
   }
 
-  /// True iff the point constructed last lies in the closed hull of the corners. The hull may be a
-  /// triangle, a segment or a point.
+  /// True iff the last point lies in the closed hull of the corners. The hull may be a triangle, a
+  /// segment or a point.
   bool lies_in(const BigCorners& t) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -261,8 +261,8 @@ class PointSearch {
       return true;
     }
     // Collinear corners: the hull is the union of the edges. The point is on an edge if it is on
-    // the edge's line and, in every coordinate, its offsets from both ends differ in sign or are
-    // zero. This holds for an edge of length 0 as well.
+    // the line of the edge and, in every coordinate, its offsets from the two ends differ in sign
+    // or one of them is zero. This is right for an edge of length 0 as well.
     for (int i = 0; i < 3; ++i) {
       edge(v_, t, i);
       cross(side_, v_, from_[i]);
@@ -276,7 +276,7 @@ class PointSearch {
   }
 
  private:
-  /// w_ = q - p, times both scales, for the last points p of this search and q of `other`.
+  /// Sets w_ to q - p, times both scales, for the last points p of this search and q of `other`.
   void from_to(const PointSearch& other) {
     for (int k = 0; k < 3; ++k) {
       multiply(w_[k], other.point_[k], scale_);
@@ -288,8 +288,8 @@ class PointSearch {
     edge(w_, t, 1);
     cross(normal_, v_, w_);
   }
-  /// Makes the point from + (numerator / scale) u. Returns false unless 0 <= numerator / scale <=
-  /// 1.
+  /// Sets the point to from + (numerator_ / scale_) u_. Returns false unless the factor is from
+  /// 0 to 1.
   bool along(const BigVector& from) {
     if (scale_ < 0) {
       mpz_neg(scale_.get_mpz_t(), scale_.get_mpz_t());
@@ -304,14 +304,14 @@ class PointSearch {
   }
 
   BigVector point_;                // the point times scale_
-  mpz_class scale_;                // > 0 if there is a point
+  mpz_class scale_;                // > 0 after a point was constructed
   std::array<BigVector, 3> from_;  // vectors from each corner to the point, times scale_
   BigVector normal_, u_, v_, w_, side_;
   mpz_class numerator_, value_;
 };
 
-/// True iff test() holds for one of the 21 points: corners, crossings of an edge and a plane,
-/// crossings of two edges.
+/// True iff test() is true for one of the 21 points: corners, crossings of an edge and a plane,
+/// crossings of two edges. The tested point is the last point of `search`.
 bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const auto& test) {
   for (int i = 0; i < 3; ++i) {
     if (search.edge_and_plane(a, i, b) && test()) return true;
@@ -329,8 +329,8 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
   return false;
 }
 
-/// True iff test() holds for one of the 42 pairs of points (docs/certificate.md), one on a and one
-/// on b.
+/// True iff test() is true for one of the 42 pairs of points (docs/certificate.md), one point on a
+/// and one point on b.
 bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                     const auto& test) {
   for (int i = 0; i < 3; ++i) {

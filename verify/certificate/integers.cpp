@@ -1,10 +1,10 @@
-// A rounded root is only a guess, so root_above() compares its exact square with the fraction.
+// root_above() guesses a root, then compares the exact square of the guess with the fraction.
 #include "verify/certificate/integers.h"
 
 namespace farcull {
 namespace {
 
-/// True if the text is a whole number: only digits, without a leading zero.
+/// True if the text is a whole number: at most kMostDigits digits, without a leading zero.
 bool is_whole(std::string_view text) {
   if (text.empty() || text.size() > kMostDigits || (text[0] == '0' && text.size() > 1))
     return false;

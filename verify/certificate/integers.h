@@ -1,5 +1,5 @@
-// The numbers of verify/certificate: vectors of machine integers and of GMP's integers, conversion
-// of doubles to integers, fractions. Only the sources of verify/certificate,
+// The numbers of verify/certificate: vectors of machine integers and of GMP integers, fractions,
+// and the conversion of doubles to integers. Only the sources of verify/certificate,
 // verify/distance_accounting.h and tests include this file.
 #pragma once
 
@@ -72,15 +72,15 @@ void edge(Vector<Integer>& out, const Corners<Integer>& t, int i) {
 }
 
 // A pair of triangles in integers. Every finite double is an integer times a power of two. So one
-// common power turns all coordinates of a pair into integers, and nothing is rounded.
+// common power of two turns all coordinates of a pair into integers without rounding.
 
-/// value = mantissa * 2^exponent, the mantissa odd or 0.
+/// A double as mantissa * 2^exponent. The mantissa is odd or 0.
 struct Parts {
   std::int64_t mantissa = 0;
   int exponent = 0;
 };
 
-/// Precondition: the value is finite.
+/// Splits a double into mantissa and exponent. Precondition: the value is finite.
 inline Parts parts(double value) {
   if (value == 0) return {};
   int exponent = 0;
@@ -101,8 +101,8 @@ inline mpq_class rational(double x) {
   return std::isfinite(x) ? mpq_class(x) : mpq_class((x > 0 ? 1 : -1) * (mpz_class(1) << 1024));
 }
 
-/// True if a number y, rounded to the nearest double, ties to even, becomes x. beside(next) returns
-/// the sign of y - (x + next) / 2, where `next` is a neighbouring double of x.
+/// True if the double nearest to a number y is x (ties to even). For a neighbouring double `next`
+/// of x, beside(next) must return the sign of y - (x + next) / 2.
 template <class Beside>
 bool is_nearest_double(double x, const Beside& beside) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -112,14 +112,14 @@ bool is_nearest_double(double x, const Beside& beside) {
   return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
 }
 
-/// Two triangles in integers. Each input corner is the first corner of the input triangle `a`, plus
-/// 2^exponent times the integers stored here.
+/// Two triangles in integers. The corners of the input are the first corner of the input triangle
+/// `a`, plus 2^exponent times the integers stored here.
 struct ScaledPair {
   Corners<mpz_class> a, b;
   int exponent = 0;
 };
 
-/// Scales two triangles to integers. length: a finite number; the scale makes it an integer, too.
+/// Scales two triangles to integers. length: finite; the scale makes `length` an integer, too.
 inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                          double length = 0) {
   int least = std::numeric_limits<int>::max();
@@ -138,7 +138,7 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
       scale(out.b[i][k], b[i][k], out.exponent);
     }
   }
-  // Subtracts the first corner of a from all corners. The differences mostly have fewer digits.
+  // Subtracts the first corner of a from all corners, which usually leaves fewer digits.
   const Vector<mpz_class> origin = out.a[0];
   for (auto* t : {&out.a, &out.b}) {
     for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
@@ -150,22 +150,22 @@ inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 
 namespace farcull {
 
-/// A fraction over / under. Not always in lowest terms.
+/// A fraction over / under, not always in lowest terms.
 struct Fraction {
   mpz_class over = 0;   // >= 0
   mpz_class under = 1;  // > 0
 
-  /// Compares values: 1/2 equals 2/4.
+  /// Compares the values, so 1/2 equals 2/4.
   friend std::strong_ordering operator<=>(const Fraction& x, const Fraction& y);
   friend bool operator==(const Fraction& x, const Fraction& y) { return x <=> y == 0; }
 };
 
 /// The numerator and the denominator of a squared distance have at most this many decimal digits.
-/// All coordinates of a scene times 2^1074 are integers below 2^2098, and their differences are
-/// below D = 2^2099. In this scale the square of a distance is (w . d)^2 / (d . d). Here |w_k| < D,
-/// and |d_k| < 2 D^2, as for a cross product of two edges. So numerator and denominator are below
-/// (6 D^3)^2 < 2^12600. In world units the denominator has 2148 bits more: (d . d) 2^2148 < (2
-/// D^2)^2 * 3 * 2^2148 < 2^10548. Division by common factors only shortens both numbers.
+/// All coordinates of a scene times 2^1074 are integers below 2^2098, so their differences are
+/// below D = 2^2099. In this scale the squared distance is (w . d)^2 / (d . d). Here |w_k| < D, and
+/// |d_k| < 2 D^2, as for a cross product of two edges. So numerator and denominator are below
+/// (6 D^3)^2 < 2^12600. In world units the denominator has 2148 bits more: (d . d) 2^2148 <
+/// (2 D^2)^2 * 3 * 2^2148 < 2^10548. Division by common factors only shortens both numbers.
 /// log10(2^12600) < 3793.
 constexpr std::size_t kMostDigits = 4000;
 
@@ -173,14 +173,14 @@ constexpr std::size_t kMostDigits = 4000;
 Fraction square_of(double length);
 
 /// Parses the whole text as a fraction: decimal digits, '/', decimal digits. Returns nothing for
-/// any other text, if a number has leading zeros or more than kMostDigits digits, or if the
-/// fraction is not in lowest terms.
+/// any other text. Also returns nothing if a number has leading zeros or more than kMostDigits
+/// digits, or if the fraction is not in lowest terms.
 std::optional<Fraction> parse_fraction(std::string_view text);
 
-/// Returns the root or a slightly larger double; infinity if the root exceeds all finite doubles.
+/// Returns the square root or a slightly larger double; infinity if the root exceeds all doubles.
 double root_above(const Fraction& fraction);
 
-/// A length, given by its square.
+/// A length, stored as its exact square.
 struct Length {
   Fraction squared;
   double above = 0;  // root_above(squared)

@@ -1,4 +1,4 @@
-// Certificates as text. The reader does not trust the text, so a first pass checks only the syntax.
+// Certificates as JSON. The reader does not trust the text: a first pass checks only the syntax.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-// Version 4 is version 3 with a clearance, and version 5 is version 4 with a tile.
+// Version 4 adds a clearance to version 3. Version 5 adds a tile to version 4.
 constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4, kVersionOfTile = 5;
 constexpr const char* kRemedy =
     "give a file that `{run} ... {certificate}` wrote; docs/certificate.md is the format";
@@ -49,7 +49,7 @@ class Syntax : public nlohmann::json_sax<Json> {
                 printable(fault.substr(0, fault.find("; last read")), 120));
   }
 
-  std::string reason;  // why it stopped
+  std::string reason;  // why parsing stopped
 
  private:
   bool stop(std::string why) {
@@ -57,7 +57,7 @@ class Syntax : public nlohmann::json_sax<Json> {
     return false;
   }
   bool count() {
-    constexpr std::uint64_t kMostValues = 10'000;  // the lists in a certificate are short
+    constexpr std::uint64_t kMostValues = 10'000;  // all arrays in a certificate are short
     return ++values_ <= kMostValues || stop("more values than any certificate has");
   }
   bool enter() {
@@ -75,11 +75,11 @@ class Syntax : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;  // keys of each enclosing object; empty for arrays
 };
 
-/// Reads the values of an object by their keys. If a value has the wrong type, throws Error naming
-/// the file and the path of the value, such as unattested.views[1].width.
+/// Reads the values of a JSON object by their keys. If a value has the wrong type, throws Error
+/// naming the file and the path of the value, such as unattested.views[1].width.
 class Reader {
  public:
-  /// name: the file. place: the path of the object; empty for the whole certificate. Throws Error
+  /// name: the file. place: the path of the object; empty for the top-level object. Throws Error
   /// unless the value is an object with exactly these keys.
   Reader(const std::string& name, const Json& object, const std::string& place,
          const std::vector<const char*>& keys)
@@ -176,7 +176,7 @@ Tile read_tile(const Reader& in) {
   };
   place("from", tile.from);
   place("to", tile.to);
-  // If a tile could end before it begins, consecutive tiles could cover a place twice.
+  // If a tile could end before its beginning, consecutive tiles could cover a place twice.
   if (!(tile.from <= tile.to)) in.fail("tile.to is less than tile.from");
   return tile;
 }
@@ -239,7 +239,7 @@ std::string to_text(const Certificate& certificate) {
 
 Certificate parse_certificate(std::string_view text, const std::string& name) {
   const auto fail = [&](const std::string& reason) { throw Error(name, reason, kRemedy); };
-  // The parser would stop at a byte 0.
+  // The parser would end the text at a zero byte.
   if (text.find('\0') != text.npos) fail("is not JSON, which has no byte 0");
   Syntax syntax;
   if (!Json::sax_parse(text.begin(), text.end(), &syntax)) fail(syntax.reason);

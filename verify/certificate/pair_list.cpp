@@ -1,5 +1,5 @@
-// Makes the list line by line, so that its hash needs only the memory for one line and the owners
-// of the triangles. A list from a file is compared with the scene and with the pairs that meet.
+// Makes the list line by line, so hashing needs memory only for one line and for the owners of the
+// triangles. A list from a file is compared with the scene and with the pairs that meet.
 #include "verify/certificate/pair_list.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ bool share_corner(const Scene& scene, const TrianglePair& pair) {
 
 std::string in_quotes(std::string_view text) { return "'" + printable(text, 40) + "'"; }
 
-/// Divides the text into lines and the lines into cells.
+/// Divides a CSV text into lines, and the lines into cells.
 class CsvReader {
  public:
   CsvReader(std::string_view text, const std::string& name) : text_(text), name_(name) {
@@ -67,7 +67,7 @@ class CsvReader {
       line.remove_prefix(end);
       return out;
     }
-    std::string out;  // two quotes in a row stand for one quote
+    std::string out;  // two adjacent quotes stand for one quote
     for (;;) {
       const std::size_t end = line.find('"');
       if (end == std::string_view::npos) fail("the quotes of a cell are not closed on their line");
@@ -226,10 +226,10 @@ ListDifferences find_differences(const Scene& scene, const std::string& name,
     out.wrong_reason = std::move(why);
     out.wrong_pair = pair.a == pair.b ? std::nullopt : std::optional(pair);
   };
-  struct Meeting {  // a row of the list whose pair meets
+  struct Meeting {  // a row whose pair meets
     TrianglePair pair;
     std::uint64_t line;
-    bool wrong;  // the row's entry in `neighbours` is wrong
+    bool wrong;  // true: the row has a wrong value of `neighbours`
     auto operator<=>(const Meeting&) const = default;
   };
   std::vector<Meeting> listed;

@@ -1,5 +1,5 @@
-// Makes OpenGL contexts on EGL devices, without a window system. A context is current only while a
-// GlCurrent object for it exists.
+// Makes OpenGL contexts on EGL devices, without a window system. Makes a context current, and
+// restores the previous EGL state of the thread.
 #include "core/gl/base/context.h"
 
 #include <epoxy/egl.h>
@@ -25,8 +25,8 @@ struct EglContext {
   EGLContext context = EGL_NO_CONTEXT;
 
   ~EglContext() {
-    // The display stays initialized: EGL has one display per device, and another context of this
-    // process may be using it.
+    // Does not terminate the display: EGL has one display per device, and another context of this
+    // process may be using the display.
     if (context == EGL_NO_CONTEXT) return;
     if (eglGetCurrentContext() == context)
       eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -47,12 +47,12 @@ bool has_word(const std::string& list, const std::string& word) {
   return (" " + list + " ").find(" " + word + " ") != std::string::npos;
 }
 
-// driver_threads() returns the larger of two counts, because each can be too small.
-// running_threads() misses a thread that does not have the name llvmpipe yet. asked_threads() is
-// wrong if LP_NUM_THREADS had another value when Mesa read it.
+// driver_threads() returns the larger of two counts, because each count can be too small.
+// running_threads() misses a new thread that is not yet named llvmpipe. asked_threads() is wrong if
+// Mesa read another value of LP_NUM_THREADS.
 
-// Returns LP_NUM_THREADS as llvmpipe interprets it. If it is not set, returns the number of cores,
-// or 0 for one core. Call this before the first display is opened, when llvmpipe reads the value.
+// Returns the thread count that llvmpipe derives from LP_NUM_THREADS. The default is the number of
+// cores, or 0 for one core. Call this before a display is opened: llvmpipe then reads the value.
 int asked_threads() {
   static const int asked = [] {
     constexpr long kMost = 16;  // maximum number of llvmpipe threads in Mesa 22
@@ -81,9 +81,9 @@ int running_threads() {
   return threads;
 }
 
-// Throws Error if too little address space is left for Mesa's software device (as under ulimit -v).
-// The device needs memory for its libraries, such as LLVM, and a stack and a heap for each of up to
-// 16 threads. With less memory the device crashes, or seems not to be installed.
+// Throws Error if too little address space is left for Mesa's software device, for example because
+// of ulimit -v. The device needs memory for libraries such as LLVM, and a stack and a heap for each
+// of up to 16 threads. With less memory, the device crashes or appears not to be installed.
 void require_memory() {
   const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
   const std::size_t bytes = (std::size_t{256} + std::size_t{64} * threads) << 20;
@@ -99,7 +99,7 @@ void require_memory() {
   ::munmap(reserved, bytes);
 }
 
-// Throws Error unless libEGL exists and its client extensions can list and open devices. Calls
+// Throws Error if libEGL is missing, or lacks the extensions to list and open devices. Calls
 // epoxy_has_egl() first, because libepoxy aborts the process if libEGL is missing.
 void require_egl() {
   asked_threads();
@@ -170,7 +170,7 @@ GlInfo read_info(const std::string& kind) {
   return info;
 }
 
-// Makes a context on the device, and makes it current. Returns an empty text, or the error.
+// Makes a context on the device and makes it current. Returns the error, or "" on success.
 std::string open(EGLDeviceEXT device, EglContext& out) {
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
@@ -218,7 +218,7 @@ struct GlContext::Handles {
   GlInfo info;
 };
 
-// The state of EGL in this thread: one current context and one bound rendering API.
+// Saves EGL's state of this thread (rendering API, current context). The destructor restores it.
 struct GlCurrent::Before {
   EGLenum api = eglQueryAPI();
   EGLDisplay display = eglGetCurrentDisplay();
@@ -231,7 +231,7 @@ struct GlCurrent::Before {
     if (context != EGL_NO_CONTEXT) {
       eglBindAPI(api);
       if (eglMakeCurrent(display, draw, read, context)) return;
-      // The previous context has been destroyed, so no context becomes current.
+      // The saved context no longer exists. The code below leaves no context current.
     }
     if (ours != EGL_NO_DISPLAY || now != EGL_NO_DISPLAY) {
       eglBindAPI(EGL_OPENGL_API);
@@ -335,7 +335,7 @@ std::vector<GlDevice> GlContext::list_devices() {
 }
 
 int driver_threads(const std::string& renderer) {
-  // Mesa's zink (OpenGL on Vulkan) can draw with llvmpipe. Its renderer text then names llvmpipe.
+  // If Mesa's zink (OpenGL on Vulkan) draws with llvmpipe, its renderer text also names llvmpipe.
   if (renderer.find("llvmpipe") == std::string::npos) return 0;
   return std::max(asked_threads(), running_threads());
 }
@@ -351,7 +351,7 @@ std::string risk_of_threads(const std::string& renderer) {
 
 void check_gl(const std::string& stage) {
   std::string errors;
-  // A lost context may report errors without end.
+  // Stops after 16 errors, because a lost context may report errors endlessly.
   for (int i = 0; i < 16; ++i) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) break;

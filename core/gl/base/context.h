@@ -1,4 +1,4 @@
-// A headless OpenGL context through EGL, without a window system, on a chosen device.
+// Creates OpenGL contexts through EGL, without a window system, on a chosen device.
 #pragma once
 
 #include <memory>
@@ -7,18 +7,18 @@
 
 namespace farcull {
 
-/// One EGL device of this machine; `--device` takes its index.
+/// One EGL device of this machine. The constructor of GlContext accepts its index.
 struct GlDevice {
   int index = 0;
   std::string kind;                       // "software" or "hardware"
   std::string extensions;                 // EGL device extensions
-  std::string drm;                        // device file, if the device has one
-  bool usable = false;                    // farcull can make a context on this device
-  std::string vendor, renderer, version;  // strings of its OpenGL context
+  std::string drm;                        // DRM device file; empty if there is none
+  bool usable = false;                    // true: a context was made on this device
+  std::string vendor, renderer, version;  // strings of the device's OpenGL context
   std::string problem;                    // why the device is not usable
 };
 
-/// Describes the device of a context. Every result is recorded with this description.
+/// Describes the device of a context.
 struct GlInfo {
   std::string kind;  // "software" or "hardware"
   std::string vendor, renderer, version, glsl;
@@ -31,13 +31,13 @@ struct GlInfo {
 };
 
 /// Owns a context of OpenGL 4.3 core or later. The context is current only while a GlCurrent object
-/// for it exists. A thread may use several contexts one after the other. Several threads may use
-/// one context, one thread at a time.
+/// for the context exists. A thread may use several contexts, one after the other. Several threads
+/// may use one context, one thread at a time.
 class GlContext {
  public:
-  /// device: "" (hardware first, then software), "hardware", "software" or an index of
-  /// list_devices(). Throws Error if EGL or the device is missing, or if its OpenGL is too old.
-  /// Afterwards the context that was current in this thread is current again.
+  /// device: "" (hardware if available, else software), "hardware", "software" or an index of
+  /// list_devices(). Throws Error if EGL or the device is missing, or if the device's OpenGL is too
+  /// old. Does not change which context is current in this thread.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -45,9 +45,9 @@ class GlContext {
 
   const GlInfo& info() const;
 
-  /// Returns all devices, and tries to make a context on each one. Throws Error without EGL.
+  /// Describes all devices. Tries to make a context on each device. Throws Error if EGL is missing.
   static std::vector<GlDevice> list_devices();
-  /// True if EGL lists a hardware device. Opens no device. Throws Error without EGL.
+  /// True if EGL lists a hardware device. Opens no device. Throws Error if EGL is missing.
   static bool hardware_listed();
 
  private:
@@ -58,11 +58,11 @@ class GlContext {
 
 /// Makes a context current in this thread while the object exists. The destructor restores the
 /// previous state: no context, another GlContext, or a context of the caller with its surfaces and
-/// its rendering API. GlCurrent objects may be nested. All code that calls GL must hold one.
+/// rendering API. Code may call GL only while a GlCurrent object exists. Objects may be nested.
 class GlCurrent {
  public:
-  /// Throws Error if the context cannot be made current: another thread is using it, or a
-  /// context of another window-system interface (GLX) is current in this thread.
+  /// Throws Error if the context cannot be made current, for example because another thread is
+  /// using the context, or because a GLX context is current in this thread.
   explicit GlCurrent(const GlContext& context);
   ~GlCurrent();
   GlCurrent(const GlCurrent&) = delete;
@@ -71,23 +71,23 @@ class GlCurrent {
  private:
   friend class GlContext;
   struct Before;
-  GlCurrent();                      // saves the current state, and changes nothing
+  GlCurrent();                      // makes no context current; the destructor restores the state
   std::unique_ptr<Before> before_;  // null: the context was already current
 };
 
-/// Returns the number of threads with which Mesa's llvmpipe draws in this process: the number of
-/// running threads, or the number set by LP_NUM_THREADS, whichever is larger. Returns 0 if the
-/// renderer is not llvmpipe. Such threads may write to freed memory (docs/drivers.md), so nothing
-/// is guaranteed on a device that has them (assumption A10).
+/// Returns the number of threads with which Mesa's llvmpipe draws in this process: the larger of
+/// the number of running threads and the number set by LP_NUM_THREADS. Returns 0 if the renderer is
+/// not llvmpipe. These threads may write to freed memory (docs/drivers.md). So farcull guarantees
+/// nothing if there are such threads (assumption A10).
 int driver_threads(const std::string& renderer);
 
-/// Returns a text about the risk of the driver's threads and the remedy, without a full stop.
-/// Returns an empty text if driver_threads() is 0.
+/// Returns a text that explains the risk of the driver's threads and the remedy, without a full
+/// stop at the end. Returns an empty text if driver_threads() is 0.
 std::string risk_of_threads(const std::string& renderer);
 
-/// Throws Error naming `stage` if GL reports an error or a reset (assumption A7). Also throws if
-/// this thread's floating-point environment is not the one that the proofs assume, because the
-/// driver may have changed it.
+/// Throws Error if GL reports an error or a reset (assumption A7). Also throws if the driver has
+/// changed this thread's floating-point environment, so that the assumption of the proofs fails
+/// (core/base/floating_point.h). stage: the step that the error names.
 void check_gl(const std::string& stage);
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
-// For each kind of fault, replaces the GL functions that should fail. The thread-local `plan` tells
-// which call fails. In threads without a plan, a replacement calls the driver's function.
+// Replaces the GL functions that should fail, for each kind of fault. The thread-local `plan` tells
+// which call fails. In threads without a plan, the replacements call the driver's functions.
 #include "core/gl/base/driver_fault.h"
 
 #include <optional>
@@ -13,9 +13,9 @@ using Kind = DriverFaultKind;
 
 struct Plan {
   Kind kind;
-  std::optional<std::size_t> strike;  // number of the failing call; empty: none
-  std::size_t calls = 0;              // number of calls since strike()
-  bool query_lost = false;            // glBeginQuery was lost, so glEndQuery must not be called
+  std::optional<std::size_t> strike;  // number of the failing call; empty: no call fails
+  std::size_t calls = 0;              // number of calls since DriverFault::strike()
+  bool query_lost = false;            // glBeginQuery was not called, so glEndQuery must be skipped
 
   bool now() { return strike && calls++ == *strike; }
 };
@@ -32,9 +32,9 @@ void draw(GLenum mode, GLint first, GLsizei count) {
   if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
 }
 
-// In every compute program of farcull, the line kEnd ends an invocation after its last work item. A
-// fault replaces this line by kEarlierEnd, which also ends the invocation before work item
-// far_lost_item - 1. If far_lost_item is 0, no invocation ends early.
+// In every compute program of farcull, the line kEnd ends an invocation after its last work item.
+// The fault unfinished_item replaces this line by kEarlierEnd, which also ends the invocation
+// before work item far_lost_item - 1. If far_lost_item is 0, no invocation ends early.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";
@@ -84,7 +84,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
     text.replace(at, from.size(), to);
 }
 
-// Changes a source only if it is one null-terminated string, as gl_program() passes it.
+// Changes only sources that are one null-terminated string, as in gl_program().
 void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);

@@ -1,7 +1,7 @@
-// Simulates faults of a GL driver. `farcull doctor` and the tests check that each fault is noticed
-// (assumption A7). While a DriverFault object exists, some of libepoxy's pointers to GL functions
-// point to replacements. A replacement can let a call fail, or change the source of a shader. Only
-// core/gl and its tests include this file.
+// Simulates faults of a GL driver, to check that farcull detects each fault (assumption A7). While
+// a DriverFault object exists, some of libepoxy's pointers to GL functions point to replacements. A
+// replacement can drop a call, or change the source of a shader. Only core/gl and its tests include
+// this file.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -18,8 +18,8 @@ namespace farcull {
 template <auto* Pointer, class Function = std::remove_pointer_t<decltype(Pointer)>>
 class GlEntryPoint;
 
-/// Sets *Pointer to `replacement` for the lifetime of the object. For each GL function, only one
-/// such object may exist. The replacement calls the driver's function by original().
+/// Sets *Pointer to `replacement` for the lifetime of the object. Only one object per GL function
+/// may exist at a time. The replacement can call the driver's function by original().
 template <auto* Pointer, class Result, class... Arguments>
 class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
  public:
@@ -37,8 +37,8 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
   static Result original(Arguments... arguments) {
     if (resolved_) return original_(arguments...);
-    // The first call restores libepoxy's own function, which then stores the driver's function in
-    // *Pointer. Later calls do not change *Pointer, since other threads may be calling it.
+    // At first, original_ may be libepoxy's resolver. The first call lets the resolver store the
+    // driver's function in *Pointer. Later calls do not write *Pointer: other threads may read it.
     *Pointer = original_;
     struct Again {
       ~Again() {
@@ -52,21 +52,21 @@ class GlEntryPoint<Pointer, Result (*)(Arguments...)> {
 
  private:
   static inline Function original_ = nullptr, replacement_ = nullptr;
-  static inline std::atomic<bool> resolved_ = false;  // original_ is the driver's function
+  static inline std::atomic<bool> resolved_ = false;  // true: original_ is the driver's function
 };
 
 enum class DriverFaultKind {
   lost_draw,           // a draw call never runs
   lost_dispatch,       // a compute dispatch never runs
   oversized_dispatch,  // a compute dispatch exceeds the device's limit
-  unfinished_item,     // an invocation of a dispatch ends before one of its work items is done
+  unfinished_item,     // an invocation of a compute dispatch skips its last work items
   lost_query,          // an occlusion query is never issued
-  blind_queries,       // all occlusion queries answer zero, from strike() on
+  blind_queries,       // after strike(), the result of every occlusion query is zero
 };
 
 /// Makes GL calls fail in the thread that constructs the object. Calls of other threads reach the
-/// driver unchanged. The constructor waits until no other DriverFault exists. For the kind
-/// unfinished_item, programs must be compiled while the object exists.
+/// driver unchanged. The constructor waits until no other DriverFault exists. A fault of the kind
+/// unfinished_item affects only programs that are compiled while the object exists.
 class DriverFault {
  public:
   explicit DriverFault(DriverFaultKind kind);

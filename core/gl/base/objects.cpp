@@ -1,4 +1,4 @@
-// Compiles GL programs. Checks after each binding and allocation that GL has carried it out.
+// Compiles GL programs. Checks that GL has executed each binding and each allocation of a buffer.
 #include "core/gl/base/objects.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kReport = "report this driver's log with the output of `{doctor}`";
 
-// Macros that hide differences between GLSL and C++, such as out parameters. core/base/glsl_shim.h
+// Macros for differences between GLSL and C++, such as out parameters. core/base/glsl_shim.h
 // defines the same macros for C++, so kernels compile in both languages.
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
@@ -19,10 +19,10 @@ constexpr const char* kKernelNames =
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
-// FAR_AT(array, index) is an element of the array at the end of a storage block. An index past the
-// end gives the last element. After a lost command, a shader can read a wrong index from a buffer
-// before the host notices the loss. Such an index must not lead outside the array. The storage
-// buffers of farcull are never empty.
+// FAR_AT(array, index) is an element of the array at the end of a storage block, or the last
+// element if the index is past the end. After a lost command, a shader can read a wrong index from
+// a buffer before the host detects the loss. The macro keeps the access inside the array. The
+// storage buffers of farcull are never empty.
 constexpr const char* kElement =
     "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
 
@@ -36,8 +36,8 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
-// Binds the buffer `name`. Throws Error if GL reports another binding, because an update would then
-// change a wrong buffer.
+// Binds the buffer `name`. Throws Error if GL reports another binding, because an update would
+// change the wrong buffer.
 void bind_storage(GLuint name) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
   GLint bound = 0;
@@ -52,8 +52,8 @@ void throw_lost(const std::string& stage, const std::string& reason) {
   throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
 }
 
-// Returns pseudorandom numbers, so that a sum of a few of them is unlikely to be 0. Each step is a
-// bijection, so the first 2^32 numbers are all different.
+// Returns numbers that look random, so that a sum of a few numbers is unlikely to be 0. Each step
+// of the function is a bijection, so the first 2^32 numbers are all different.
 std::uint32_t gl_number() {
   static std::atomic<std::uint32_t> last{0};
   std::uint32_t tag = last += 1;

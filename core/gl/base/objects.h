@@ -1,5 +1,5 @@
-// GL objects of core/gl: owned names, programs, storage buffers, and the echo (a checksum that
-// reveals lost commands). Only core/gl and its tests include this.
+// Owners of GL objects, programs, storage buffers, and the echo (a checksum that reveals lost
+// commands). Only core/gl and its tests include this file.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// Throws Error: a command of the GL stage `stage` was lost. reason: the sign of the loss.
+/// Throws Error because the driver lost a command in `stage`. reason: how the loss was detected.
 [[noreturn]] void throw_lost(const std::string& stage, const std::string& reason);
 
 template <void (*Delete)(GLuint)>
@@ -60,38 +60,38 @@ Object gl_make(void (*generate)(GLsizei, GLuint*)) {
   return Object(name);
 }
 
-/// Makes a texture of one level with the nearest filter, and leaves it bound.
+/// Makes a texture of one level with the nearest filter. The texture stays bound.
 GlTexture gl_texture(GLenum format, int width, int height);
 
 struct ShaderText {
   GLenum stage;
   std::vector<std::string> texts;
 };
-/// Compiles and links a program. The source of each stage is "#version 430 core", `defines` (one
-/// #define line each) and the stage's texts. If this fails, throws Error with the driver's log.
+/// Compiles and links a program. The source of each stage is the version, macros for kernels, one
+/// #define line for each of `defines`, and the stage's texts. Throws Error with the log on failure.
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages);
 
-/// Replaces the contents of a shader storage buffer. The new size is at least 16 bytes, so that the
-/// buffer can be bound.
+/// Replaces the contents of a shader storage buffer. The new size is at least 16 bytes, because an
+/// empty buffer cannot be bound. data: `bytes` bytes; null leaves the contents undefined.
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
 
-/// Returns a number that is unique in this process (for the first 2^32 calls).
+/// Returns a number that is unique in this process, for the first 2^32 calls.
 std::uint32_t gl_number();
 
-/// Size of the head of a storage buffer, before its data: the tag and three zero words.
+/// Number of bytes before the data of a GlStore: the tag and three zero words.
 constexpr std::size_t kTagBytes = 16;
 
-/// A shader storage buffer that grows and never shrinks. It begins with a tag: a number that no
-/// other buffer of the process has. Programs include the tag in their echo, so the echo shows which
-/// buffer was bound. Programs declare the buffer as { uvec4 tag; T data[]; }. Offsets are relative
-/// to the data. Each function checks the binding before it accesses contents, so that a lost
-/// binding cannot damage another buffer. Each function throws Error if GL fails.
+/// A shader storage buffer that can grow but never shrinks. The buffer begins with a tag: a number
+/// that no other buffer of the process has. Programs include the tag in their echo, so the echo
+/// shows which buffer was bound. Programs declare the buffer as { uvec4 tag; T data[]; }. Offsets
+/// are relative to the data. Each access first checks the binding, and throws Error if another
+/// buffer is bound. So a lost binding cannot damage another buffer.
 class GlStore {
  public:
   /// Makes room for `wanted` bytes of data. If the store has to grow, its new size is the larger of
   /// `wanted` and 1.5 times the old size (but at most `most`). Returns true if the store has grown;
-  /// its contents are then undefined. If this throws, the store is unchanged.
+  /// the contents are then undefined. If the function throws, the store is unchanged.
   bool reserve(std::size_t wanted, std::size_t most);
   void write(std::size_t at, const void* data, std::size_t bytes);
   /// Sets the first `bytes` bytes of data, a multiple of 4, to 0.
@@ -108,13 +108,13 @@ class GlStore {
   std::size_t bytes_ = 0;
 };
 
-// The echo (assumption A7) is a hash that the device returns. It covers the values that a program
-// read, or the data on the device. A wrong echo reveals a lost command. kEchoGlsl is the hash in
-// GLSL.
+// The echo (assumption A7) is a hash that the device computes from values that a program has read,
+// or from data on the device. The host computes the expected hash. A difference reveals a lost
+// command.
 
-/// Hashes a word with its position, by the finalizer of MurmurHash3. For each position the hash is
-/// a bijection, and each bit of the word can change every bit of the result. So if a few words
-/// change, the sum of their hashes very probably changes.
+/// Hashes a word with its position, by the finalizer of MurmurHash3. For a fixed position, the hash
+/// is a bijection, and each bit of the word can change every bit of the result. So if a few words
+/// change, the sum of all hashes very probably changes.
 inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   std::uint32_t mixed = word ^ place * 0x9e3779b9u;
   mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
@@ -122,7 +122,7 @@ inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   return mixed ^ mixed >> 16;
 }
 
-/// GLSL code for the hash of values that a shader reads. FAR_ADD adds a hashed word to `sum`.
+/// The same hash in GLSL. FAR_ADD adds the hash of a word to the variable `sum` of the shader.
 inline constexpr char kEchoGlsl[] = R"glsl(
 uint far_mixed(uint word, uint place) {
   uint mixed = word ^ place * 0x9e3779b9u;
@@ -133,7 +133,7 @@ uint far_mixed(uint word, uint place) {
 #define FAR_ADD(place, word) sum += far_mixed((word), (place));
 )glsl";
 
-/// The sum of words, each hashed with its position.
+/// The sum of the hashes of some words with their positions.
 struct GlEcho {
   std::uint32_t sum = 0;
   std::uint32_t place = 0;  // position of the next word

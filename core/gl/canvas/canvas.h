@@ -1,6 +1,6 @@
 // Implements Canvas with OpenGL 4.3. Draws proxies or triangles from storage buffers into a depth
-// texture. Each slot (index of a result of a pass) has an occlusion query, or a flag that the
-// fragment program sets.
+// texture. The result for a slot comes from an occlusion query, or from a flag that the fragment
+// shader sets.
 #pragma once
 
 #include <bit>
@@ -16,13 +16,13 @@ namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
 /// How the canvas decides whether a slot is seen in a visibility test (Verb::ask).
-/// - flags: a fragment that is seen sets its slot's flag. The shader compares the depths of proxies
-///   (float32 only: equal depths may differ in a 24-bit texture). For triangles at fixed depth,
-///   early fragment tests decide.
-/// - occlusion: a GL_ANY_SAMPLES_PASSED query for each slot, as published.
+/// - flags: a visible fragment sets the flag of its slot. For proxies, the shader compares depths.
+///   This needs float32, because equal depths may differ in a 24-bit texture. For triangles, the
+///   early depth test decides.
+/// - occlusion: a GL_ANY_SAMPLES_PASSED query for each slot, as in the papers.
 enum class QueryMode { flags, occlusion };
 
-/// Returns the define for a canvas.frag that tests visibility. behind: the slack, as exact bits.
+/// Returns the macro definition with which canvas.frag tests visibility. behind: the slack.
 inline std::string ask_define(float behind = kAskedBehind) {
   return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
 }
@@ -30,10 +30,10 @@ inline std::string ask_define(float behind = kAskedBehind) {
 struct GlCanvasOptions {
   DepthFormat depth_format = DepthFormat::float32;
   QueryMode query = QueryMode::flags;
-  /// True: triangles have a fragment in each pixel that they touch. Needs GL_NV_conservative_raster
-  /// or GL_INTEL_conservative_rasterization.
+  /// True: a triangle gets a fragment in each pixel that it touches. Needs the GL extension
+  /// GL_NV_conservative_raster or GL_INTEL_conservative_rasterization. Only for DepthMode::fixed.
   bool conservative = false;
-  /// Largest size of a storage block in bytes. 0: the device's own limit.
+  /// Largest allowed size of a storage block in bytes. 0: the limit of the device.
   long storage_limit = 0;
 };
 
@@ -41,11 +41,11 @@ struct CanvasState;
 
 class GlCanvas final : public Canvas {
  public:
-  /// `mode` and `solid` are those of the fattener that makes the drawables. Throws Error if the
-  /// options contradict each other or the device refuses. The context must outlive the canvas. Each
-  /// call makes the context current. If begin(), run(), samples() or depths() throws, all data on
-  /// the device are deleted. The other functions then throw std::logic_error until the next
-  /// begin().
+  /// mode, solid: members of the fattener that makes the drawables. Throws Error if the options
+  /// contradict each other or the device does not support them. The context must outlive the
+  /// canvas. Each function makes the context current during the call. If begin(), run(), samples()
+  /// or depths() throws, all data on the device are deleted. After that, run(), samples() and
+  /// depths() throw std::logic_error until begin() is called again.
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
@@ -70,7 +70,7 @@ class GlCanvas final : public Canvas {
   GlCanvasOptions options_;
   RasterLimits limits_;
   std::unique_ptr<CanvasState> state_;  // null after a failure
-  CanvasWork earlier_;                  // work of states that were deleted
+  CanvasWork earlier_;                  // work of all deleted states
 };
 
 std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,

@@ -1,5 +1,5 @@
 // The passes of the GL canvas. A batch is a sequence of draws that belong to one step and read one
-// element buffer. A pass uploads its draw list and draws it batch by batch. The results are used
+// element buffer. A pass uploads its draw list and draws the list batch by batch. Results are used
 // only if report, number of primitives and control items (state.h) show that every command ran.
 #include "core/gl/canvas/canvas.h"
 
@@ -26,7 +26,7 @@ class Layout {
     out_.serial = gl_number();
     out_.list.assign(kTagBytes / sizeof(GpuDraw), GpuDraw{0, 0});
     out_.slots = pass.slots;
-    // The quad covers the pixel centres of the window, but none of the border.
+    // The quad for kEverywhere covers all pixel centres of the window, but none outside.
     const double x = 0.5 * canvas.window.width + 0.25, y = 0.5 * canvas.window.height + 0.25;
     add_quad(-x, -y, x, y, 0.0f);
     own_elements_ = quad_elements();
@@ -50,14 +50,14 @@ class Layout {
 
   CanvasPass finish() {
     if (out_.list.size() % 2 != 0)
-      out_.list.push_back({0, 0});  // the device sums 16 bytes at a time
+      out_.list.push_back({0, 0});  // the device hashes 16 bytes at a time: two entries
     return std::move(out_);
   }
 
  private:
   std::size_t quad_elements() const { return canvas_.mode == DepthMode::fragment ? 1 : 2; }
 
-  // Adds a quadrilateral at fixed depth, one proxy or two triangles, to the canvas's own elements.
+  // Adds a rectangle at depth d to the canvas's own elements, as one proxy or two triangles.
   void add_quad(double x0, double y0, double x1, double y1, float d) {
     std::vector<float>& own = out_.own;
     const float l = static_cast<float>(x0), b = static_cast<float>(y0), r = static_cast<float>(x1),
@@ -74,7 +74,7 @@ class Layout {
 
   void push(Verb verb, std::size_t chunk, std::uint32_t element, std::uint32_t slot) {
     if (fresh_ || out_.batches.back().chunk != chunk) {
-      // Pads the list, so that a batch begins at a multiple of `grain` entries.
+      // Pads the list, because the device can bind a batch only at a multiple of `grain` entries.
       const std::size_t grain = canvas_.alignment / sizeof(GpuDraw);
       out_.list.resize((out_.list.size() + grain - 1) / grain * grain, GpuDraw{0, 0});
       const auto word = CanvasReport::kHead + static_cast<std::uint32_t>(out_.batches.size());
@@ -86,7 +86,7 @@ class Layout {
     ++out_.batches.back().count;
   }
 
-  // pixel: number of the pixel in the lowest row of the target.
+  // Adds a control item that covers one pixel. pixel: its index in the lowest row of the target.
   void push_control(Verb verb, double depth, int pixel, std::uint32_t slot) {
     const double x = pixel - 0.5 * canvas_.target_width, y = -0.5 * canvas_.target_height;
     add_quad(x, y, x + 1, y + 1, static_cast<float>(depth));
@@ -119,13 +119,13 @@ class Layout {
   std::size_t own_elements_ = 0;
   std::size_t stores_ = 0;
   std::size_t index_ = 0;  // index of the step
-  bool fresh_ = true;      // the next draw starts a batch
+  bool fresh_ = true;      // true: the next draw starts a batch
 };
 
-// Returns the draw list of `pass`. With `marks`, the first step must store and the last step must
-// test, so a step that has only control items (state.h) is added where necessary. The first store
-// draws this pass's mark. The first test looks for the mark of the previous pass. Without `marks`,
-// no step is added, and no mark is drawn or tested.
+// Returns the draw list of `pass`. If `marks` is true, the first step must store and the last step
+// must test. If they do not, steps with only control items (state.h) are added. The first store
+// then draws the mark of this pass, and the first test looks for the mark of the previous pass. If
+// `marks` is false, no step is added, and no mark is drawn or tested.
 CanvasPass lay_out(const CanvasState& canvas, const Pass& pass, bool marks) {
   Layout out(canvas, pass, marks);
   if (marks && pass.steps.front().verb != Verb::store) out.add_step({Verb::store, 0, 0});
@@ -166,12 +166,12 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   begun = true;
 }
 
-// Looks for a stored set of elements that was made from these bytes, and makes it the current set.
-// Returns false if there is none; the caller must then write the elements. Several sets are stored,
-// because an unchanged scene needs one set per view.
+// Selects the stored set of elements with these bytes. Returns false if no stored set has these
+// bytes: the caller must then write the elements. Several sets are stored, because an unchanged
+// scene needs one set per view.
 bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   constexpr std::size_t kEarlier = 2;                       // maximum of earlier.size()
-  constexpr std::size_t kLargest = std::size_t{128} << 20;  // maximum of bytes.size() in `earlier`
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // a larger new set clears `earlier`
   const auto is_same = [&](const CanvasElements& set) {
     return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
   };
@@ -192,12 +192,12 @@ bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
   return false;
 }
 
-// Draws all batches. Returns the number of primitives that should be drawn.
+// Draws all batches. Returns how many primitives the device should have drawn.
 std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
   const bool with_flags = options.query == QueryMode::flags;
   std::uint64_t primitives_of_pass = 0;
-  std::uint32_t open = kNone;           // slot whose occlusion query is active
-  const CanvasBatch* before = nullptr;  // batch that was drawn before
+  std::uint32_t open = kNone;           // the slot whose occlusion query is active
+  const CanvasBatch* before = nullptr;  // the previous batch
   for (std::size_t r = 0; r < laid.batches.size(); ++r) {
     const CanvasBatch& batch = laid.batches[r];
     primitives_of_pass += batch.count * primitives();
@@ -245,8 +245,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
-    // Every pass generates new query names. If glBeginQuery is lost, no query object exists for the
-    // new name, so that the result of an earlier pass cannot be read.
+    // Generates new query names in every pass. If glBeginQuery is lost, no query object exists for
+    // the new name. So read_queries() cannot read a result of an earlier pass.
     queries.clear();
     while (queries.size() < laid.slots) queries.push_back(gl_make<GlQuery>(glGenQueries));
   }
@@ -290,7 +290,7 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   return seen;
 }
 
-// Waits for the device and reads the report. Adds the time between stamps 0 and 1 to `work`.
+// Waits for the device and reads the report. Adds the time between time stamps 0 and 1 to `work`.
 std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   const std::uint64_t bytes = report->bytes_in_all();
   std::vector<std::uint8_t> seen = report->read(stage);
@@ -307,7 +307,7 @@ std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
   return seen;
 }
 
-// Reads the occlusion queries. Does not wait, since report->read() has already waited.
+// Reads the results of the occlusion queries. report->read() has already waited for the device.
 std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   work.readbacks += slots;
   work.downloaded_bytes += slots * sizeof(GLuint);
@@ -315,14 +315,14 @@ std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;
     glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &result);
-    // If a query was never issued, its name has no query object, so `result` is unchanged.
+    // If glBeginQuery was lost, there is no query object, and GL leaves `result` unchanged.
     if (result == kNone) throw_lost("pass", "query " + std::to_string(i) + " gave no answer");
     seen[i] = result != 0;
   }
   return seen;
 }
 
-// Draws all of `wanted` with one program into a target that uses the canvas's depth texture.
+// Draws all of `wanted` with one program. target: a framebuffer with the canvas's depth texture.
 void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<Draw>& wanted,
                            GLuint target) {
   const bool store = verb == Verb::store;
@@ -348,7 +348,7 @@ void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<
   float corner[3] = {-1, -1, -1};
   glReadPixels(0, 0, 3, 1, GL_DEPTH_COMPONENT, GL_FLOAT, corner);
   check_gl("samples");
-  // With 24 bits, depth_rounding() is less than 4 steps of 2^-24, half of kControlGap.
+  // For a 24-bit buffer, depth_rounding() is less than 4, which is half of kControlGap / 2^-24.
   const double moved = std::abs(corner[0] - (kControlTop - kControlGap));
   if (!(moved <= (options.depth_format == DepthFormat::float32 ? 0x1p-24 : 4 * 0x1p-24)))
     throw_lost("samples", "the control item was not drawn");
@@ -402,7 +402,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   return out;
 }
 
-// Makes the context current, creates a missing state, and runs `work`. On failure, calls forget().
+// Makes the context current, creates a missing state, and runs `work`. Calls forget() on failure.
 template <class Work>
 auto GlCanvas::guarded(const Work& work) {
   const GlCurrent current(context_);
@@ -433,8 +433,8 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
   GLint framebuffer[2] = {0, 0};
   glGetIntegerv(GL_MAX_FRAMEBUFFER_WIDTH, &framebuffer[0]);
   glGetIntegerv(GL_MAX_FRAMEBUFFER_HEIGHT, &framebuffer[1]);
-  // A window is at most five pixels wider than its resolution (fit_window). Each side of its
-  // viewport is a power of two.
+  // A window is at most five pixels wider than its resolution (fit_window). The sides of a viewport
+  // are powers of two.
   const int viewport = static_cast<int>(std::bit_floor(static_cast<unsigned>(info.max_viewport)));
   limits_.max_resolution =
       std::min({viewport, info.max_texture_size, framebuffer[0], framebuffer[1]}) - 2 * kBorder - 6;
@@ -443,7 +443,7 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
 
 GlCanvas::~GlCanvas() { forget(); }
 
-// Deletes all GL objects. If the context cannot be made current, they are freed with the context.
+// Deletes all GL objects. If the context cannot be made current, GL frees them with the context.
 void GlCanvas::forget() {
   if (state_) earlier_ += std::exchange(state_->work, {});
   try {
@@ -454,7 +454,7 @@ void GlCanvas::forget() {
       if (open != 0) glEndQuery(target);
     }
     state_.reset();
-    // Discards errors about the deleted objects. A lost context may report errors without end.
+    // Discards pending GL errors, at most 16: a lost context may report errors endlessly.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
   } catch (const Error&) {

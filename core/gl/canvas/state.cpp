@@ -1,6 +1,6 @@
-// Sets the GL state for a pass. Values that GL can return are read back at once. The echo of each
-// batch, a checksum from the device, covers the other values. Compute programs sum the uploaded
-// data and pack the flags. CanvasReport compares each echo with the echo computed on the CPU.
+// Sets the GL state for a pass, and reads back each value that GL can return. The echo, a checksum
+// computed on the device, covers the other values. Compute programs sum the uploaded data and pack
+// flags into bits. CanvasReport compares each echo with its expected value.
 #include "core/gl/canvas/state.h"
 
 #include <algorithm>
@@ -46,9 +46,8 @@ std::uint32_t sum_of(std::span<const std::byte> data) {
   return sum;
 }
 
-// Waits until the device has finished all commands.
 void wait_for_device(const std::string& stage) {
-  constexpr int kLongest = 600;  // s
+  constexpr int kLongest = 600;  // seconds
   const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   GLenum answer = GL_TIMEOUT_EXPIRED;
   for (int second = 0; second < kLongest && answer == GL_TIMEOUT_EXPIRED; ++second)
@@ -75,11 +74,11 @@ GLenum conservative_switch() {
 }
 
 constexpr std::uint32_t kAllBits = 0xffffffff;
-constexpr std::uint32_t kGroup = 64;            // local_size_x of canvas_work.comp
-constexpr std::uint32_t kBatches[2] = {64, 4};  // work items of an invocation, by step
+constexpr std::uint32_t kGroup = 64;            // work group size: local_size_x of canvas_work.comp
+constexpr std::uint32_t kBatches[2] = {64, 4};  // work items per invocation: {sum, pack}
 constexpr std::size_t kVec4 = 4 * sizeof(std::uint32_t);
 
-// Positions of words in the echo of core/gl/canvas/canvas.vert.
+// Positions at which canvas.vert hashes these values into its echo (a checksum).
 constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11, kReportPlace = 12,
                         kFlagsPlace = 13, kFlagSerialPlace = 14, kTouchingPlace = 15;
 
@@ -87,8 +86,9 @@ constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11
 
 CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment)
     : context_(context), block_(block) {
-  // expect() sums a buffer in pieces. A piece's bound range begins at a multiple of the alignment,
-  // 16 bytes before its data. These bytes are the tag, or the end of the previous piece.
+  // expect() sums a buffer in pieces and binds one range per piece. A range must begin at a
+  // multiple of `alignment`. The range begins kTagBytes before its piece, so that its head is the
+  // buffer's tag (first piece) or the end of the previous piece (other pieces).
   const std::size_t step = std::max(alignment, kTagBytes);
   piece_ = std::max(block / step, std::size_t{1}) * step;
   for (std::uint32_t step_number = 0; step_number < 2; ++step_number) {
@@ -106,7 +106,7 @@ void CanvasReport::start(std::size_t batches, std::size_t dispatches, std::uint3
   flags_ = 0;
   const std::size_t words = kHead + batches + dispatches + 1 + (flags + 31) / 32;
   store_.reserve(words * sizeof(std::uint32_t), block_);
-  // If this write is lost, the device adds to the numbers of the last pass, and read() throws.
+  // If this write is lost, old sums remain on the device, and read() throws.
   const std::uint32_t zero[kHead] = {0, 0};
   store_.write(0, zero, sizeof zero);
   finished_ = sum_ = 0;
@@ -116,7 +116,7 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
                             std::size_t bytes, std::uint32_t tag, std::uint32_t count,
                             std::uint32_t serial, std::uint32_t flags) {
   const std::uint32_t place = kHead + static_cast<std::uint32_t>(echoes_.size());
-  // Values of the uniforms of canvas_work.comp: count, echo, serial, flags, bits.
+  // The uniforms of canvas_work.comp: u_count, u_echo, u_serial, u_flags and u_bits.
   const std::array n = {count, place, serial, flags, step == 1 ? place + 1 : 0};
   glUseProgram(programs_[step]);
   for (std::size_t k = 0; k < n.size(); ++k)
@@ -158,7 +158,7 @@ std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   wait_for_device(stage);
   const std::size_t bits = kHead + echoes_.size();
   // If store_.read() is lost, all words keep this initial value. The number of finished work items
-  // cannot have this value, so the comparison with finished_ below then throws.
+  // is never kAllBits, so a comparison below throws.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);
@@ -312,7 +312,7 @@ void CanvasState::clear_depth(float value) const {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-// Sets the state that is constant during a pass.
+// Sets the GL state that is constant during a pass, and clears the depth buffer to `clear`.
 void CanvasState::start(float clear) const {
   glBindVertexArray(vertex_array);
   const int vw = viewport_side(window.width), vh = viewport_side(window.height);
@@ -337,7 +337,7 @@ void CanvasState::start(float clear) const {
   clear_depth(clear);
 }
 
-// A pass may have as many steps as triangles, so a step makes only the GL calls that it needs.
+// Sets the GL state for a step. Makes only needed calls, since a pass may have many steps.
 void CanvasState::set_verb(Verb verb, bool touching) {
   ++work.state_changes;
   const bool ask = verb == Verb::ask, bare = ask && compares_in_shader();
@@ -352,7 +352,7 @@ void CanvasState::set_verb(Verb verb, bool touching) {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
-// Uploads the draw list and the canvas's own elements. The device sums the uploaded bytes.
+// Uploads the draw list and the canvas's own elements (state.h). The device sums their bytes.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
   const auto own = std::as_bytes(std::span(laid.own));
@@ -388,11 +388,11 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   if (with_flags) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFlags, flags.name());
 }
 
-// Binds the buffers of a batch. before: the last batch, or null. Skips bindings that are unchanged.
+// Binds the buffers of a batch, except those that `before` (the previous batch or null) bound.
 void CanvasState::bind(const CanvasBatch& batch, const CanvasBatch* before) const {
   if (before == nullptr || before->chunk != batch.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(batch).name());
-  // Turns conservative rasterization off for the canvas's own elements, which do not need it.
+  // Conservative rasterization is off for the canvas's own elements, which do not need it.
   const bool own = batch.chunk == kExtras;
   if (conservative != 0 && (before == nullptr || (before->chunk == kExtras) != own))
     set_enabled(conservative, !own, "conservative rasterization");
@@ -416,7 +416,7 @@ std::uint32_t CanvasState::echo(const CanvasPass& laid, const CanvasBatch& batch
 }
 
 void CanvasState::draw(std::size_t first, std::size_t count) {
-  // GL counts vertices in signed 32-bit numbers.
+  // Limits the vertices of a draw call, because GL counts vertices in signed 32-bit integers.
   constexpr std::size_t kMost = 1u << 26;
   for (std::size_t at = first; at < first + count; at += kMost) {
     const std::size_t n = std::min(kMost, first + count - at);
@@ -426,7 +426,7 @@ void CanvasState::draw(std::size_t first, std::size_t count) {
   }
 }
 
-// Records the device's time in a new query: if glQueryCounter is lost, no old time is read.
+// Records the device's time. The query is new, so a lost glQueryCounter leaves no old time in it.
 void CanvasState::stamp(std::size_t place) {
   if (!ticks) return;
   stamps[place] = gl_make<GlQuery>(glGenQueries);

@@ -1,4 +1,4 @@
-// Draws a picture with several samples along each side of a pixel. The CPU averages the samples.
+// Draws a picture at several times its resolution. The CPU averages the texels of each pixel.
 #include "core/gl/picture/picture.h"
 
 #include <Eigen/Geometry>
@@ -33,10 +33,10 @@ void main() { o_colour = v_colour; }
 #endif
 )glsl";
 
-// Direction to the light: behind and above the viewer's left shoulder (x right, y up, z away).
+// Direction to the light, which is behind, above and left of the viewer. x: right, y: up, z: away.
 const Vec3 kLight = Vec3(-0.45, 0.60, -0.66).normalized();
 constexpr double kAmbient = 0.42;
-constexpr std::size_t kBatch = 1 << 18;  // most corners in one upload
+constexpr std::size_t kBatch = 1 << 18;  // largest number of corners in one upload
 
 struct Corner {
   float x, y, z;
@@ -51,8 +51,8 @@ std::uint32_t packed(const Rgba& colour, double light) {
   return channel(colour.r) | channel(colour.g) << 8 | channel(colour.b) << 16 | 255u << 24;
 }
 
-// Returns the factor by which light scales a triangle's colour. Both sides have the same factor.
-// Returns 1 for degenerate triangles, which have no normal.
+// Returns the factor by which light scales a triangle's colour. Both sides of the triangle have the
+// same factor. Returns 1 for a degenerate triangle, which has no normal.
 double light_on(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
@@ -129,7 +129,7 @@ class Batch {
   double lift_ = 0;
 };
 
-// Averages samples x samples texels for each pixel. The first row of texels is the lowest.
+// Averages samples x samples texels for each pixel. The first row of `texels` is the bottom row.
 Image filtered(const std::vector<Rgba>& texels, int width, int height, int samples) {
   Image out(width, height, {0, 0, 0, 0});
   for (int y = 0; y < height; ++y) {
@@ -155,8 +155,8 @@ Image filtered(const std::vector<Rgba>& texels, int width, int height, int sampl
   return out;
 }
 
-// Returns the window with a depth range that contains all triangles, even those outside the
-// window's boxes.
+// Returns the window with its depth range extended to contain all triangles, even those outside the
+// window.
 Window deepened(Window window, const Scene& scene, std::span<const PictureTriangle> triangles) {
   const Window before = window;
   for (const PictureTriangle& t : triangles) {
@@ -203,7 +203,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_CLAMP);  // keeps lifted triangles that leave the depth range
+  glEnable(GL_DEPTH_CLAMP);  // draws lifted triangles even outside the depth range
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthRange(0, 1);

@@ -1,4 +1,4 @@
-// Computes the window of a picture. Needs no device.
+// Computes the window of a picture. This needs no GL device.
 #include <algorithm>
 #include <stdexcept>
 
@@ -28,7 +28,7 @@ Window picture_window(const View& view, std::span<const Box> boxes, int width, i
     }
     return pixels;
   };
-  // Moves the origin to the middle of the image, which may differ from the middle of the boxes.
+  // Moves the origin to the middle of the image. The middle of the boxes may be elsewhere.
   Box image = pixels_of_boxes();
   out.origin += view.rows.transpose() * (0.5 * image.lo + 0.5 * image.hi);
   image = pixels_of_boxes();

@@ -1,4 +1,4 @@
-// Probes of A4 (shader arithmetic) and A9 (transfer of data to shaders). Also runs kernels.
+// Probes assumptions A4 (shader arithmetic) and A9 (shader inputs). Also runs solids' kernels.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,12 +19,12 @@ constexpr double kLargest = 0x1.fffffep127;
 constexpr int kWidth = 1024, kHeight = 512;
 constexpr std::size_t kCases = static_cast<std::size_t>(kWidth) * kHeight;
 
-using Operands = std::array<float, 4>;  // a, b, c, unused
+using Operands = std::array<float, 4>;  // operands a, b and c; the fourth is unused
 
 float from_bits(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Returns the error of `got` relative to the exact value head + tail (|tail| is tiny), in units of
-// 2^-23. A result that GLSL allows to be flushed to 0 or to overflow counts as correct.
+// Returns the error of `got` relative to the exact value head + tail, in units of 2^-23. |tail| is
+// tiny. A flush to 0 or an overflow that GLSL permits counts as no error.
 double units(float got, double head, double tail) {
   const double exact = std::abs(head);
   if (exact > kLargest) {
@@ -40,7 +40,7 @@ double units(float got, double head, double tail) {
 double sum_units(float got, double a, double b) {
   const double s = a + b;
   const double part = s - a;
-  return units(got, s, (a - (s - part)) + (b - part));  // Knuth's two-sum
+  return units(got, s, (a - (s - part)) + (b - part));  // exact sum by Knuth's two-sum
 }
 
 double quotient_units(float got, double a, double b) {
@@ -58,17 +58,17 @@ std::vector<Operands> make_operands(Random& random) {
   for (std::size_t i = 0; i < kCases; ++i) {
     float a = random.normal(-126, 127), b = random.normal(-126, 127);
     switch (i % 8) {
-      case 1:  // magnitudes that kernels compute with
+      case 1:  // magnitudes that are typical of kernels
       case 2:
         a = random.normal(-24, 20);
         b = random.normal(-24, 20);
         break;
-      case 3:  // cancellation, and comparisons of neighbours
+      case 3:  // cancellation, and comparisons of adjacent floats
         a = random.normal(-100, 100);
         b = neighbour(a, random.below(7) - 3);
         if (random.below(2)) b = -b;
         break;
-      case 4:  // b is far larger than a, so (a - b) + b differs from a
+      case 4:  // |b| is 2 to 2^31 times |a|, so (a - b) + b often differs from a
         a = random.normal(-40, 40);
         b = std::ldexp(random.normal(0, 0), 1 + random.below(30)) * a;
         break;
@@ -76,7 +76,7 @@ std::vector<Operands> make_operands(Random& random) {
         a = neighbour(std::ldexp(1.0f, random.below(80) - 40), random.below(9) - 4);
         b = neighbour(std::ldexp(1.0f, random.below(80) - 40), random.below(9) - 4);
         break;
-      case 6:  // exact quotients and their neighbours
+      case 6:  // quotients that are whole numbers, or adjacent to them
         b = random.normal(-30, 30);
         a = neighbour(b * static_cast<float>(1 + random.below(4095)), random.below(3) - 1);
         break;
@@ -88,7 +88,7 @@ std::vector<Operands> make_operands(Random& random) {
         break;
     }
     float c = a * b;
-    // If |c| is outside this range, a * b may be flushed or overflow, so c gets a random value.
+    // Outside this range, a * b may be flushed to 0 or overflow. Then c gets a random value.
     if (!(std::abs(c) > 0x1p-100f && std::abs(c) < 0x1p100f)) c = random.normal(-24, 20);
     out[i] = {a, b, neighbour(c, random.below(3) - 1), 0};
   }
@@ -99,7 +99,7 @@ struct Arithmetic {
   Worst rounded, quotient, wrong, chain;
 };
 
-// Compares the results of probe_case with the operands.
+// Compares the results of probe_case() (probe.frag) with exact results for the operands.
 void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_t>& results,
            Arithmetic& out) {
   for (std::size_t i = 0; i < operands.size(); ++i) {
@@ -108,11 +108,11 @@ void judge(const std::vector<Operands>& operands, const std::vector<std::uint32_
     const float sum = from_bits(r[0]), difference = from_bits(r[1]), product = from_bits(r[2]);
     out.rounded.add(sum_units(sum, a, b));
     out.rounded.add(sum_units(difference, a, -static_cast<double>(b)));
-    out.rounded.add(units(product, double{a} * b, 0));  // exact: the product fits a double
+    out.rounded.add(units(product, double{a} * b, 0));  // exact: a double can hold the product
     const double divisor = std::abs(b), quotient = divisor > 0 ? std::abs(a) / divisor : kLargest;
     if (divisor >= 0x1p-126 && divisor <= 0x1p126 && quotient < 0x1p126)
       out.quotient.add(quotient_units(from_bits(r[3]), a, b));
-    // Each step is compared with the device's own result of the step before, in any rounding mode.
+    // Compares the second operation of a chain with the device's own result of the first.
     if (std::abs(difference) < kLargest && std::abs(difference) >= kSmallest)
       out.chain.add(sum_units(from_bits(r[4]), difference, b));
     if (std::abs(product) > 0x1p-90f && std::abs(product) < kLargest)
@@ -261,8 +261,8 @@ std::vector<ProbeResult> arithmetic(const GlContext&, const ProbeOptions& option
 
 }  // namespace farcull::probe
 
-// Runs kernels on single cases. A canvas draws each solid in one pixel of a square window, and the
-// solid's entry and exit depths are read back.
+// The functions below run kernels on test cases. A canvas draws each case's solid in its own pixel
+// of a square window. Entry and exit depths, or visibility, are read back.
 namespace farcull {
 
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
@@ -282,7 +282,7 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
   const std::vector<float> entry = canvas.samples(Verb::store, draws);
   const std::vector<float> exit = canvas.samples(Verb::ask, draws);
   std::vector<SolidAnswer> out;
-  // If only one of entry and exit was drawn, the other is NaN, and the interval is empty.
+  // samples() returns NaN where no fragment was drawn. An answer with one NaN counts as wrong.
   for (std::size_t i = 0; i < cases.size(); ++i)
     out.push_back({!std::isnan(entry[i]) || !std::isnan(exit[i]), entry[i], exit[i]});
   return out;

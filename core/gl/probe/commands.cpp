@@ -1,7 +1,7 @@
-// Probes of A7, A8 and A10. A7: lost commands are noticed, and the next pass gives the right
-// answer. A8: after a barrier, later commands read what a dispatch or a draw wrote, and atomics
-// neither lose nor repeat an update. (A weak barrier shows only on devices that reorder commands.)
-// A10: the driver has no threads that are known to damage memory.
+// Probes the device assumptions A7, A8 and A10. A7: lost commands are noticed, and the next pass
+// returns correct results. A8: after a barrier, later commands read what a dispatch or a draw
+// wrote, and atomics neither lose nor repeat an update. (A weak barrier shows only on devices that
+// reorder commands.) A10: the driver has no threads that are known to damage memory.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -16,7 +16,7 @@ namespace {
 
 ProbeResult faults(const std::string& name, const GlContext& context, const ProbeOptions& options,
                    const GlCanvasOptions& kind) {
-  // Stores proxy 0, then tests proxy 1 (behind it, seen) and proxy 2 (in front, not seen).
+  // Stores proxy 0. Tests proxy 1, which is behind (seen), and proxy 2, in front (not seen).
   Drawables drawables;
   for (const float z : {0.0f, 10.0f, -10.0f}) {
     drawables.proxies.push_back(box(-20, -20, 20, 20));
@@ -68,8 +68,8 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
                 note + "; the pass after each is counted, too" + refusal);
 }
 
-constexpr std::uint32_t kGroup = 64;      // local_size_x
-constexpr std::uint32_t kTakers = 65536;  // a power of two
+constexpr std::uint32_t kGroup = 64;      // local_size_x of probe_memory.comp
+constexpr std::uint32_t kTakers = 65536;  // number of invocations, a power of two
 constexpr std::uint32_t kSpread = 16;     // number of counters, as in probe_memory.comp
 
 GlProgram step_program(int step, bool plain) {
@@ -88,8 +88,8 @@ void run(GLuint program, GLuint from, GLuint to, std::uint32_t count, std::uint3
 }
 
 // Every invocation increments one counter, decrements another, sets its own bit, and sets a mark
-// that it shares with one other invocation. Checks that no two invocations get the same number from
-// a counter, that every bit is set, and that exactly one of two invocations finds their mark unset.
+// that it shares with one other invocation. Checks that a counter gives no number twice, that every
+// bit is set, and that of two invocations exactly one finds the mark unset.
 ProbeResult atomics(const ProbeOptions& options) {
   const GlProgram program = step_program(0, options.plain_atomics);
   Worst wrong;
@@ -176,7 +176,7 @@ ProbeResult draws(const ProbeOptions& options) {
     bind_zeros(counts, 2, kPixels);
     target.start();
     target.use(count);
-    // The deliberate defect: the dispatch runs before the draw whose counts it copies.
+    // Deliberate defect: the dispatch runs before the draw that writes the counts.
     if (options.unordered_reads) run(copy, counts, copied, kPixels);
     glUseProgram(count);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, counts);
@@ -201,7 +201,7 @@ std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
 }
 
-// Counts the driver's threads, which may damage memory. No probe can observe the damage itself.
+// Counts the driver's threads that may write to freed memory. The damage itself is not measured.
 std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));

@@ -1,4 +1,4 @@
-// Probes of A5 (depth tests and the depths that they store) and of A6 (occlusion queries).
+// Probes assumptions A5 (depth tests, and the depths that they store) and A6 (occlusion queries).
 #include <algorithm>
 #include <array>
 
@@ -15,7 +15,7 @@ constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
 
 // Returns random depths, one for each pixel. They lie in the range of the canvas's depth map, at
 // the ends of this range, at depths of control items (core/gl/canvas/state.h), or anywhere. If
-// `beside` is given, some depths are within two floats of the depth of `beside` in the same pixel.
+// `beside` is not empty, some depths are at most two floats away from beside[i] in pixel i.
 std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
   std::vector<float> out(kPixels);
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -30,7 +30,6 @@ std::vector<float> random_depths(Random& random, const std::vector<float>& besid
   return out;
 }
 
-// Returns one proxy per pixel, at these depths.
 std::vector<Proxy> proxies_at(const std::vector<float>& depths) {
   std::vector<Proxy> out = pixel_proxies(kSide);
   for (std::size_t i = 0; i < kPixels; ++i) out[i].solid[4][2] = depths[i];
@@ -52,7 +51,7 @@ ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
     proxies.insert(proxies.end(), one.begin(), one.end());
   }
   target.upload(proxies);
-  // Draws `count` layers into an empty buffer. Returns the depths that the buffer then holds.
+  // Clears the buffer and draws `count` layers. Returns the depths that the buffer then holds.
   const auto store = [&](std::size_t first, std::size_t count) {
     target.start();
     Target::depth_test(GL_LESS, true);
@@ -118,7 +117,7 @@ ProbeResult texels(const ProbeOptions& options) {
   std::vector<Proxy> proxies = pixel_proxies(kSide);
   std::vector<float> depths;
   for (std::uint32_t i = 0; i < kPixels; ++i) {
-    // Depths in the range of the depth map, near the ends of this range, in [0, 1), and 0 or 1.
+    // Depths: in the depth map's range, near its ends, anywhere in [0, 1), and exactly 0 or 1.
     float d = random.in_float(0.25, 0.75);
     if (i % 4 == 1) d = neighbour(random.below(2) ? 0.25f : 0.75f, random.below(9) - 4);
     if (i % 4 == 2) d = random.in_float(0, 1);
@@ -141,7 +140,7 @@ ProbeResult texels(const ProbeOptions& options) {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, target.depth_texture());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  glDispatchCompute(kPixels / 64, 1, 1);  // local_size_x
+  glDispatchCompute(kPixels / 64, 1, 1);  // 64 is local_size_x of probe_memory.comp
   Worst wrong;
   const std::vector<std::uint32_t> words = words_of(got, kPixels);
   for (std::uint32_t i = 0; i < kPixels; ++i) {
@@ -159,7 +158,7 @@ ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
                               const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 64;
   constexpr std::uint32_t kSlots = kWindow * kWindow;
-  constexpr std::ptrdiff_t kStored = std::ptrdiff_t{2} * kWindow * kWindow;  // proxies
+  constexpr std::ptrdiff_t kStored = std::ptrdiff_t{2} * kWindow * kWindow;  // stored proxies
   Random random(options.seed + 8);
   GlCanvas canvas(context, DepthMode::fragment, depth_solid(), kind);
   Worst wrong;
@@ -203,7 +202,7 @@ ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
       "depths say so");
 }
 
-// Issues all single-pixel queries before reading the first. Odd queries draw hidden proxies.
+// Issues all single-pixel queries, then reads their results. Odd queries draw hidden proxies.
 ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& options) {
   Random random(options.seed + 9);
   constexpr std::size_t kQueries = 3000;
@@ -217,7 +216,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
     std::vector<Proxy> proxies;
     for (std::size_t i = 0; i < kQueries; ++i) {
       const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;
-      // The proxy is a square around the pixel's centre. About half of them cover the whole pixel.
+      // Each proxy is a square around a pixel's centre. About half of the squares fill the pixel.
       const double d = random.below(2) ? 0 : random.below(7) / 16.0;
       proxies.push_back(box(x + d, y + d, x + 1 - d, y + 1 - d));
       proxies.back().solid[4][1] = 1;
@@ -253,7 +252,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
                     std::to_string(hidden));
 }
 
-// Tests rectangles of 1 to 400 pixels through the canvas. In each, few or no pixels are visible.
+// Tests rectangles of 1 to 400 pixels with the canvas. A rectangle has few visible pixels or none.
 ProbeResult area_queries(const std::string& name, const GlContext& context,
                          const ProbeOptions& options, const GlCanvasOptions& kind) {
   constexpr int kWindow = 256;
@@ -266,7 +265,8 @@ ProbeResult area_queries(const std::string& name, const GlContext& context,
     drawables.proxies.push_back(q);
     drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
   };
-  // Stores a far background, and some near pixels. A solid is tested between these two depths.
+  // Stores a far background (z = 50) and some near pixels (z = -50). The rectangles are tested
+  // at z = 0, so they are seen only in the near pixels. `open` marks the near pixels.
   std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
   constexpr double kHalf = 0.5 * kWindow;
   add(box(-kHalf, -kHalf, kHalf, kHalf), 50);

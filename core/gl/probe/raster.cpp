@@ -1,5 +1,5 @@
-// Probes of A1 and A2 (displacements of edges), of A3 (the pixels that triangles cover), and of A9
-// (gl_FragCoord).
+// Probes the device assumptions A1 and A2 (displacements of edges), A3 (the pixels that triangles
+// cover), and A9 (gl_FragCoord).
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -73,7 +73,7 @@ class Coverage {
 enum class Direction { upright, level, diagonal, any };
 
 // Tests edges near pixel centres, one proxy for each edge. If the coverage of a centre is wrong,
-// the edge was displaced by at least its distance from the centre (px per axis).
+// the distance of edge and centre (px per axis) is a lower bound of the edge's displacement.
 void short_edges(Coverage& coverage, Random& random, Direction direction, double reach,
                  Worst& worst) {
   constexpr int kCell = 6, kEdge = 3;
@@ -83,7 +83,7 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
   for (int y = kEdge; y + kCell + kEdge <= height; y += kCell) {
     for (int x = kEdge; x + kCell + kEdge <= width; x += kCell) {
       const double cx = coverage.centre_x(x + kCell / 2), cy = coverage.centre_y(y + kCell / 2);
-      double turn = 0;  // angle of the outward normal
+      double turn = 0;  // angle of the outward normal, in radians
       const int side = random.below(4);
       if (direction == Direction::upright) turn = (side % 2) * std::numbers::pi;
       if (direction == Direction::level) turn = (side % 2 + 0.5) * std::numbers::pi;
@@ -117,7 +117,7 @@ void short_edges(Coverage& coverage, Random& random, Direction direction, double
   }
 }
 
-// Returns a convex quadrilateral, of any thinness, with corners on an ellipse inside the box.
+// Returns a convex quadrilateral, possibly very thin. Its corners lie on an ellipse in the box.
 Proxy random_quad(Random& random, double cx, double cy, double half_width, double half_height) {
   const double turn = random.between(0, 2 * std::numbers::pi);
   const double thin = std::exp2(-random.between(0, 10));
@@ -145,8 +145,8 @@ bool has_sides(const Proxy& q) {
   return true;
 }
 
-// Draws one proxy as large as the target. Measures the displacement of its sides at all pixels.
-// Counts the pixels inside it that are not covered exactly once.
+// Draws one proxy as large as the target. `worst` measures the displacement of the proxy's sides at
+// all pixels. `wrong` counts pixels more than `margin` inside that are not covered exactly once.
 void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst, Worst* wrong) {
   const int width = coverage.target().width(), height = coverage.target().height();
   const Proxy q = random_quad(random, 0, 0, 0.5 * width - 1, 0.5 * height - 1);
@@ -163,7 +163,7 @@ void large_quad(Coverage& coverage, Random& random, double margin, Worst* worst,
   }
 }
 
-// Keeps the measurement that is closest to its bound. worst.samples sums over all measurements.
+// Keeps the measurement with the largest ratio to its bound. worst.samples is a running total.
 struct Tightest {
   Worst worst;
   double bound = 0;
@@ -229,7 +229,7 @@ Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds)
   return wrong;
 }
 
-// Draws a mesh of jittered cells that share corners. Each pixel inside must be covered once.
+// Draws a mesh of jittered cells that share corners. Each inner pixel must be covered once.
 Worst abutting_mesh(Coverage& coverage, Random& random) {
   const int side = coverage.target().width();
   Worst wrong;
@@ -267,8 +267,8 @@ Worst abutting_mesh(Coverage& coverage, Random& random) {
   return wrong;
 }
 
-// Draws points and segments, which must cover no pixel. Snapping leaves multiples of 1/16 px
-// unchanged, and axis-parallel segments remain segments. So the snapped triangles have no area.
+// Draws points and segments, which must cover no pixel. Snapping keeps their area 0: multiples of
+// 1/16 px do not move, and an axis-parallel segment remains an axis-parallel segment.
 Worst zero_area(Coverage& coverage, Random& random, bool fat) {
   const int side = coverage.target().width();
   std::vector<Proxy> proxies;
@@ -278,7 +278,7 @@ Worst zero_area(Coverage& coverage, Random& random, bool fat) {
       return random.below(2) ? c + 0.5 : c + random.below(16) / 16.0;
     };
     const double x = place(), y = place();
-    const double shift = random.in_float(-1, 1);  // not a multiple of 1/16; along one axis only
+    const double shift = random.in_float(-1, 1);  // not a multiple of 1/16; added along one axis
     constexpr int kWays[][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {1, -1}, {1, 2}, {-3, 1}};
     const int way = random.below(7);
     std::array<double, 8> at{};
@@ -331,7 +331,7 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     for (int round = 0; round < rounds(options, 4); ++round)
       large_quad(coverage, random, 0, &whole, nullptr);
     displacement = std::max(displacement, edge.value);
-    // The excess over the snapping measured near the centre is due to the vertex arithmetic.
+    // `near` is the displacement by snapping. The excess over `near` is due to vertex arithmetic.
     edge.value = std::max(0.0, edge.value - near.value);
     far.add(edge, vertex);
     large.add(whole, snap + vertex);

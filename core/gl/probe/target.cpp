@@ -1,5 +1,5 @@
-// Runs the groups of probes in order. If an Error ends a group, the group fails and the next one
-// runs. The groups share a render target, which draws with the canvas's vertex program.
+// Runs the groups of probes in order. If an Error ends a group, the group fails and the next group
+// runs. Also defines the render target of the probes, which draws with the canvas's vertex program.
 
 #include <algorithm>
 #include <numbers>
@@ -266,7 +266,7 @@ double snap_bound(const GlContext& context, const ProbeOptions& options) {
 }
 
 double vertex_bound(const ProbeOptions& options, int viewport) {
-  // Budget::vertex bounds a length in the plane. Dividing by sqrt(2) gives the bound for one axis.
+  // Budget::vertex bounds a distance in the plane. Dividing by sqrt(2) gives a bound per axis.
   return options.no_vertex_term ? 0 : budget_for({}, viewport).vertex / std::numbers::sqrt2;
 }
 

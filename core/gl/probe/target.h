@@ -39,7 +39,7 @@ struct Random : RandomNumbers {
 /// Returns the float that is `steps` floats above x (below x if `steps` is negative).
 float neighbour(float x, int steps);
 
-/// The worst measured value (NaN counts as infinite), or the number of wrong results.
+/// Collects the worst measured value (add(); NaN counts as infinite), or counts wrong results.
 struct Worst {
   double value = 0;
   std::uint64_t samples = 0;
@@ -80,7 +80,7 @@ void on_canvases(const std::string& assumption, const std::string& kind, CanvasP
                  std::vector<ProbeResult>& out);
 
 /// Returns a proxy with these corners (px from the target's centre) and a solid of zeros. Callers
-/// may set s0 = (-, -, entry, exit) and s4 = (-, fixed, depth, -).
+/// may set the solid's entry (s0.z), exit (s0.w), or a fixed depth (s4.y = 1 and s4.z).
 Proxy quad(const std::array<double, 8>& corners);
 Proxy box(double x0, double y0, double x1, double y1);
 /// Returns a proxy that covers pixel i of a square target. side: px, even. i counts row by row.
@@ -90,24 +90,24 @@ std::vector<Proxy> pixel_proxies(int side);
 
 enum class DepthBuffer { none, float32, fixed24 };
 
-/// A render target of any even size (px). It places proxies as GlCanvas does: with its vertex
-/// program, viewport and scale to normalized device coordinates. Colour is one uint per pixel.
+/// A render target of any even size (px). Like GlCanvas, it places proxies with canvas.vert, and
+/// with the same viewport and scale to normalized device coordinates. Colour is one uint per pixel.
 class Target {
  public:
   Target(int width, int height, DepthBuffer depth = DepthBuffer::none);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int viewport() const;  // the larger side, px
+  int viewport() const;  // larger side of the viewport, px
   std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
 
-  /// Binds the target with its viewport, clears colour to 0 and depth to `clear`.
+  /// Binds the target, sets its viewport, and clears colour to 0 and depth to `clear`.
   void start(double clear = 1) const;
   /// Sets the depth function, and whether draws store their depths.
   static void depth_test(GLenum function, bool store);
-  /// Sets the uniforms of canvas.vert and canvas.frag, and u_width; leaves the program in use.
+  /// Sets the uniforms of canvas.vert and canvas.frag, and u_width. The program remains in use.
   void use(GLuint program, float depth_scale = 1) const;
-  /// Sends `proxies` as elements 0, 1, .... The slot of each element is its number.
+  /// Uploads `proxies` as elements 0, 1, .... The slot of each element is the element's index.
   void upload(const std::vector<Proxy>& proxies);
   void draw(std::size_t first, std::size_t count) const;
 
@@ -135,10 +135,9 @@ GlProgram proxy_program(const std::string& name, const std::vector<std::string>&
 void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
 std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
-/// Returns a window of this size and depth (px) that looks along z, with 1 px per world unit.
+/// Returns a window that looks along z, with 1 px per world unit and depths -depth to depth (px).
 Window window(int width, int height, double depth = 100);
-/// A solid that every line hits, at the entry and exit depths of its proxy: s0 = (-, -, entry,
-/// exit).
+/// A solid that every line hits. The proxy gives the entry depth (s0.z) and the exit depth (s0.w).
 inline constexpr char kDepthSolid[] = R"glsl(
 bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
                     FAR_OUT(float) exit) {
@@ -154,7 +153,7 @@ inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (
 
 /// Returns the largest side (px) that a target of a canvas on this device can have.
 int largest_side(const GlContext& context);
-/// snap_bound(), vertex_bound(): bounds (px) of the displacement per axis, by snapping or vertices.
+/// Return bounds (px per axis) of a corner's displacement by snapping, and by vertex arithmetic.
 double snap_bound(const GlContext& context, const ProbeOptions& options);
 double vertex_bound(const ProbeOptions& options, int viewport);
 

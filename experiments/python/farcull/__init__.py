@@ -18,7 +18,7 @@ import errno as _errno
 import os
 
 # Makes Mesa's llvmpipe draw without threads, since its threads may damage the memory of this process. Mesa
-# reads the variable when a display is opened. A value that the caller has set is kept, and reports name this value.
+# reads the variable when a display is opened. A value that the caller has set stays, and reports state the value.
 os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
@@ -50,13 +50,13 @@ class MissingFileError(Error, FileNotFoundError):
 
 try:
     from . import _farcull
-except ImportError as error:  # pip cannot install libraries of the system
+except ImportError as error:  # pip cannot install system libraries
     raise ImportError(
         f"{error}. farcull needs libraries of the system (Debian: fonts-dejavu-core libcairo2 libepoxy0 libfmt9 libglib2.0-0 "
         "libgmp10 libharfbuzz0b libhwy1 libpango-1.0-0 libpangocairo-1.0-0 libsqlite3-0 zlib1g)"
     ) from error
 
-_farcull.require_main_interpreter()  # before numpy is imported: numpy needs the main interpreter as well
+_farcull.require_main_interpreter()  # called before numpy is imported, since numpy needs the main interpreter, too
 
 from ._clash import Clash, clash, show
 from ._collide import KINDS, Collider, Report, Result, collide, join

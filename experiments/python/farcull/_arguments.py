@@ -18,14 +18,14 @@ def read(name: str, given: Any, remedy: str) -> np.ndarray:
         return np.asarray(given)
     try:
         device = getattr(given, "__dlpack_device__", None)
-        if device is not None and device()[0] not in (1, 3):  # DLPack: 1 is CPU, 3 is CUDA host memory
+        if device is not None and device()[0] not in (1, 3):  # DLPack device types: 1 is CPU, 3 is CUDA host memory
             raise InputError(name, "are in the memory of another device", "copy them to the CPU first")
         if device is not None and not hasattr(given, "__array__"):
             return np.from_dlpack(given)
         return np.asarray(given)
     except (MemoryError, InputError):
         raise
-    except Exception as error:  # methods of the argument may raise anything
+    except Exception as error:  # methods of the argument may raise any exception
         raise InputError(name, f"cannot be read as an array ({error})", remedy) from error
 
 
@@ -48,7 +48,7 @@ def array(name: str, given: Any) -> np.ndarray:
         remedy = "give an array of shape (m, 3); triangulate polygons" if indices else "give an array of shape (n, 3)"
         raise InputError(name, "have no three columns", remedy)
     if indices:
-        if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy would round to doubles
+        if kind == "u" and size == 8 and out.size and int(out.max()) >= 2**63:  # numpy would round such integers to doubles
             row = int(np.argmax((out >= np.uint64(2**63)).any(axis=1)))
             reason = f"triangle {row} names vertex {out[row].max()}"
             raise InputError(name, reason, "give indices from 0 to the number of vertices - 1")
@@ -67,14 +67,14 @@ def mesh(given: Any) -> Tuple[np.ndarray, np.ndarray]:
     remedy = "give (V, F), or an object with vertices and faces, or with points and cells"
     if isinstance(given, (tuple, list)) and len(given) == 2:
         V, F = given
-    elif hasattr(given, "vertices") and hasattr(given, "faces"):  # a mesh of trimesh, for example
+    elif hasattr(given, "vertices") and hasattr(given, "faces"):  # for example a mesh of trimesh
         V, F = given.vertices, given.faces
-    elif hasattr(given, "points") and hasattr(given, "cells"):  # a mesh of meshio, for example
+    elif hasattr(given, "points") and hasattr(given, "cells"):  # for example a mesh of meshio
         try:
             blocks = [(block.type, block.data) for block in given.cells]
         except AttributeError:
             raise InputError("meshes", "have cells without type and data", remedy) from None
-        # Skips lines and vertices, which are no surface. Refuses other cells, since skipping them would miss collisions.
+        # Ignores lines and vertices, which are not surfaces. Refuses other cells, whose collisions would be missed.
         others = {kind for kind, _ in blocks} - {"triangle", "line", "vertex"}
         if others:
             remedy = "give triangles alone, as in (mesh.points, mesh.cells_dict['triangle'])"
@@ -92,8 +92,8 @@ class Grouped:
 
     def __init__(self, F: Any, object_starts: Any, labels: Any) -> None:
         self.triangles = array("F", F)
-        self.labels: Optional[np.ndarray] = None  # a label for each object; None without labels
-        self.order: Optional[np.ndarray] = None  # the caller's number of each triangle; None: not reordered
+        self.labels: Optional[np.ndarray] = None  # one label per object; None without labels
+        self.order: Optional[np.ndarray] = None  # the caller's index of each triangle; None: not reordered
         if labels is None:
             self.starts = _starts(object_starts)
             return
@@ -135,7 +135,7 @@ class Grouped:
         rows = read("ignore", given, remedy)
         if rows.size == 0:
             return None
-        # Compares labels as Python values, since numpy compares signed with unsigned numbers as rounded doubles.
+        # Compares labels as Python values, since numpy compares signed with unsigned integers as rounded doubles.
         places = {label: place for place, label in enumerate(self.labels.tolist())}
         try:
             if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iubUS":
@@ -190,7 +190,7 @@ def ask(owner: Any, compiled: Any, grouped: Grouped, given: Arrays) -> Dict[str,
     turn = object()
     if not given[1].size and given[3].size and owner._grouped is not None:
         raise InputError("poses", "would move the arrays of a call in between", "give V and F")
-    owner._grouped = turn  # set before the first call, after which a signal handler may run
+    owner._grouped = turn  # set first, since a signal handler may run during find()
     try:
         found = compiled.find(*given)
     except InputError as error:

@@ -27,14 +27,14 @@ KINDS: Tuple[str, ...] = _farcull.kinds
 class Report:
     """Tells which stages ran, and their reasons and times, for people and logs."""
 
-    candidates_ms: float  # wall clock, from the input to the candidates
-    exact_ms: float  # wall clock of the exact tests
-    candidates: int  # pairs of ignored objects are not counted
-    decided: int  # candidates that exact tests decided, until the limit was reached
-    neighbours: int  # decided candidates that are neighbours, colliding or not
-    contacts_ms: float  # wall clock of finding the kinds of contact
-    passed_over: int  # vertices that are not finite and that no triangle uses
-    callers_arithmetic: str  # unusual rounding or flushing of the calling thread, in words; else empty
+    candidates_ms: float  # wall clock time from the input to the candidates
+    exact_ms: float  # wall clock time of the exact tests
+    candidates: int  # number of candidates, without pairs of ignored objects
+    decided: int  # number of candidates that exact tests decided before the limit was reached
+    neighbours: int  # number of decided candidates that are neighbours, colliding or not
+    contacts_ms: float  # wall clock time to find the kinds of contact
+    passed_over: int  # number of vertices that are not finite and belong to no triangle
+    callers_arithmetic: str  # text about unusual rounding or flushing modes of the calling thread; else empty
     stages: List[Dict[str, Any]]
 
 
@@ -62,9 +62,9 @@ class Result:
     complete: bool
     """False: the limit was reached, and more pairs may follow the last one. No pair before it is missing."""
     report: Report
-    # The arguments of collide() for show(): vertices, grouped triangles, self. None if a page would show other pairs.
+    # Arguments of collide() that show() needs: vertices, grouped triangles, self. None if show() cannot show these pairs.
     _input: Optional[Tuple[Any, Any, Any]] = field(default=None, repr=False)
-    _neighbour_objects: Optional[NDArray[Any]] = field(default=None, repr=False)  # None: objects were not given
+    _neighbour_objects: Optional[NDArray[Any]] = field(default=None, repr=False)  # None if no objects were given
 
     def to_pandas(self) -> Any:
         """Returns a DataFrame with a row for each pair, sorted. Columns: ``a``, ``b`` and ``neighbours``; if objects
@@ -116,7 +116,7 @@ class Collider:
     by name; ``ignore`` takes only numbers of objects. Raises InputError naming the option that is wrong.
     """
 
-    # The first parameter is positional, so that `self` can be a name of an option.
+    # The first parameter is positional only, so that an option can have the name `self`.
     def __init__(
         collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
         neighbours: bool = True, threads: int = 0, contacts: bool = False,
@@ -129,7 +129,7 @@ class Collider:
             "clearance": _arguments.number("clearance", clearance),
             "neighbours": _arguments.flag("neighbours", neighbours),
             "threads": _arguments.threads(threads),
-            # A value of Contacts in C++: 0 nothing, 1 kinds, 2 kinds and segments.
+            # Value of the enumeration Contacts in C++. 0: nothing. 1: kinds. 2: kinds and segments.
             "contacts": max(_arguments.flag("contacts", contacts), 2 * _arguments.flag("segments", segments)),
             "ignore": _arguments.ignored(ignore),
             "limit": _arguments.limit(limit),

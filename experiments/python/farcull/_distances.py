@@ -25,14 +25,14 @@ is not closed; "unknown" if they meet, or if it was not asked for."""
 class Distance:
     """The distance of two objects; with kind="all" the distance of two triangles."""
 
-    objects: Tuple[Any, Any]  # numbers from 0, or labels
-    triangles: Tuple[int, int]  # the first nearest pair; numbered as in Result.pairs
-    distance: float  # rounded to nearest; infinity beyond the largest double
-    squared: Optional[str]  # "numerator/denominator" in lowest terms, nothing rounded; None without exact=True
+    objects: Tuple[Any, Any]  # 0-based numbers, or labels
+    triangles: Tuple[int, int]  # the first of the nearest pairs; numbered as in Result.pairs
+    distance: float  # rounded to nearest; infinity if above the largest double
+    squared: Optional[str]  # exact "numerator/denominator" in lowest terms; None without exact=True
     points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
     weights: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # barycentric coordinates of the points
     normal: Tuple[float, float, float]  # unit vector from the first point to the second; zeros if the triangles meet
-    features: Tuple[str, str]  # where the points lie: two of FEATURES
+    features: Tuple[str, str]  # features on which the points lie: two of FEATURES
     inside: str  # one of INSIDE
 
 
@@ -41,15 +41,15 @@ class Distances(Sequence[Distance]):
     """Distances, as arrays with a row for each, and as a sequence of :class:`Distance`: ``found[3]`` is a Distance,
     and ``found[found.distance < 1]`` are the Distances below 1."""
 
-    objects: NDArray[Any]  # (k, 2) numbers from 0, or labels
-    triangles: NDArray[np.int64]  # (k, 2) the first nearest pair
-    distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity beyond the largest double
-    squared: NDArray[np.object_]  # (k,) texts "numerator/denominator" in lowest terms; None without exact=True
+    objects: NDArray[Any]  # (k, 2) 0-based numbers, or labels
+    triangles: NDArray[np.int64]  # (k, 2) the first of the nearest pairs
+    distance: NDArray[np.float64]  # (k,) rounded to nearest; infinity if above the largest double
+    squared: NDArray[np.object_]  # (k,) exact texts "numerator/denominator" in lowest terms; None without exact=True
     points: NDArray[np.float64]  # (k, 2, 3) nearest points, each coordinate rounded
     weights: NDArray[np.float64]  # (k, 2, 3) barycentric coordinates of the points
     normals: NDArray[np.float64]  # (k, 3) unit vector from the first point to the second; zeros if the triangles meet
-    features: NDArray[np.uint8]  # (k, 2) where the points lie, as places in FEATURES
-    inside: NDArray[np.uint8]  # (k,) places in INSIDE
+    features: NDArray[np.uint8]  # (k, 2) features on which the points lie, as indices into FEATURES
+    inside: NDArray[np.uint8]  # (k,) indices into INSIDE
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -101,7 +101,7 @@ class DistanceFinder:
     time may use a finder.
     """
 
-    # The first parameter is positional, so that `self` can be a name of an option.
+    # The first parameter is positional only, so that an option can have the name `self`.
     def __init__(
         finder, /, *, kind: Kind = "objects", k: int = 1, within: Optional[float] = None,
         self: Union[bool, Sequence[bool]] = False, inside: bool = True,

@@ -9,16 +9,16 @@ import os
 from frame import *  # noqa: F403: a chapter uses most of it
 from pages import table_csv
 
-# The counts of a part of a row, in the order of experiments/suite/ask.py (SCORE).
+# The counts in each part of a row's score. The order is that of SCORE in experiments/suite/ask.py.
 SCORE = ["asked", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered", "crashed", "hung",
          "no_memory", "not_asked", "twice", "answered", "differing", "timed", "zero", "not_zero", "negative", "off", "points",
          "points_off"]
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libraries.csv"), encoding="utf-8") as known_file:
-    # For each method of farcull: the called function, and what its documentation says. Other libraries give this in cards.
+    # For each library: the called function, and what the documentation says. Methods of farcull have this in their rows.
     DOCUMENTED = {row["contestant"]: row for row in csv.DictReader(known_file)}
 CARD = ["library", "means", "called", "says", "source", "use"]
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
-         "neighbours-apart"]  # how the triangles of a labelled pair meet
+         "neighbours-apart"]  # the labels of pairs: how the two triangles meet
 QUESTIONS = ["distance", "self", "inside", "clash"]
 
 
@@ -290,7 +290,7 @@ def fill(chapter, study):
         return
     pairs, meshes, distances = (rows[rows.asks == asks] for asks in ("pairs", "meshes", "distance"))
     add_ours(chapter, rows)
-    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions of a library
+    for name, of in by(rows, "method"):  # an old store may have rows of two versions of a library
         if of.library.nunique() > 1:
             chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
     for asks in ("pairs", "meshes"):
@@ -304,5 +304,5 @@ def fill(chapter, study):
         files.append(overview(meshes, False))
     if len(distances):
         files.append(questions_table(distances))
-    for table in files:  # too wide for the page
+    for table in files:  # these tables are too wide for the page
         chapter.files[f"tables/{table.name}.csv"] = table_csv(table)

@@ -1,9 +1,9 @@
 """Compares predicted misses with measured misses. Each run is measured at several positions of the pixel grid."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-FACTOR = 1.5    # a prediction within this factor of the measured value counts as right
-FEWEST = 20     # with fewer missed pairs, chance alone can exceed the factor
-# Scenes that were examined while the formula was found. All other scenes and seeds test the formula.
+FACTOR = 1.5    # a prediction counts as right if it is within this factor of the measured value
+FEWEST = 20     # with fewer missed pairs, chance alone can cause a larger factor
+# Scenes that were used while the formula was derived. All other scenes and seeds test the formula.
 LOOKED_AT = ["random-soup", "needles:100", "slivers:200:1e3", "crowd:200", "shells:8", "two-tori", "tree-leaves:100", "torii:720"]
 WAYS = {"cullide": "CULLIDE", "cullide --rounds 1": "CULLIDE, one round",
         "cullide --rounds 1 --clear all": "CULLIDE, all views clear", "quick-cullide": "Quick-CULLIDE"}

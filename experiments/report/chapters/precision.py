@@ -60,7 +60,7 @@ def add_violations(chapter, rows):
     """Adds each violation of fragment depth at the budget radius, except for rows that break a promise, reported already."""
     for row in rows[rows.line == OURS].itertuples():
         violations = number(row, "no_sample") + number(row, "not_bounding")
-        if violations and not breaks(row):  # rows that break a promise are reported already
+        if violations and not breaks(row):  # rows that break a guarantee have been reported already
             chapter.find_broken(
                 f"fragment depth at the budget radius, {row.bits}, {row.resolution} px, scene {row.depth:g} px deep: "
                 f"{of_all(violations, number(row, 'points'))} points of the generator \"{row.generator}\" have no "
@@ -72,7 +72,7 @@ def add_deep_windows(chapter, rows):
     at the corner of a pixel. So all depths of a contact become one number in the buffer."""
     ours = rows[rows.line == OURS]
     chord = 2 * np.sqrt(np.maximum(column(ours, "radius_px")**2 - 0.5, 0))
-    step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # 16 bits: a step is 2^-16, not 2^-24
+    step = column(ours, "step_px") * np.where(ours.bits == "16 bits", 256, 1)  # with 16 bits, a step is 2^-16 instead of 2^-24
     deep = ours[step > chord]
     if len(deep):
         lost = total(deep, "no_sample") + total(deep, "not_bounding")

@@ -95,7 +95,7 @@ def add_kept_promises(chapter, all_rows):
         chapter.find(f"Of the distances of farcull {of_all(0, total(distances, 'asked'))} were not the nearest double.")
 
 
-# ---- sets: what is lost, and sizes
+# ---- sets: neighbours that are missed, and sizes
 
 def lost_figure(scenes):
     def lost_series(scene, method):
@@ -131,7 +131,7 @@ def size_figure(scenes):
         f"below what holds all nearest neighbours. {objects_text(scenes)}.")
     for scene in scenes:
         series = [scene.series(method, "triangles_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
-        if series:  # boxes and trees have no cells, so their counts do not depend on the resolution
+        if series:  # boxes and trees use no cells, so their counts do not depend on the resolution
             x, levels = series[0].x, [(method, scene.value(method, 0, "triangles_each")) for method in (BOXES, TREES)]
             series += [Series(method, x, [y] * len(x), "lines") for method, y in levels if y == y]
             out.panels.append(Panel(scene.base, log(CELLS), log("triangles per object", zero=True), series))

@@ -73,7 +73,7 @@ def lemma_table(lemmas):
                 "from which on none is, of every generator; those that violate nothing at either radius are one row",
                 columns(["depth", "generator"], ["points", "published", "budget", "least factor",
                                                  "published: farthest outside (px)"]))
-    clean = {}  # for each surface: points and least factors of the generators without a violation
+    clean = {}  # per surface: points and least factors of generators without a violation
     for (surface, generator), rows in groups(lemmas, ["surface", "generator"]):
         published, others = rows[rows.published], rows[~rows.published]
         budget, bad = others[others.factor == 1], others.factor[column(others, "violations") > 0].max()
@@ -151,7 +151,7 @@ def add_headline(chapter, runs, placements):
                 f"; on the constructed pixel-corners it missed {of} here{not_snapped(constructed)}")
         chapter.find(f"On scenes that were not constructed against it, the published radius missed {missed_of(natural)} "
                      f"colliding pairs in {counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
-        # If smaller radii miss nothing either, these scenes show nothing about the radius.
+        # If smaller radii miss no pair either, these scenes do not show that the radius is needed.
         smaller = runs[(runs.factor == 0.9) & (runs.depth_mode == "fragment")]
         bare = runs[(runs.factor == 0) & (runs.depth_mode == "fragment")]
         if len(smaller) and len(bare):
@@ -164,7 +164,7 @@ def add_headline(chapter, runs, placements):
         said.append(f"{rate_of_rows(rows)}{more} with {bits_text(bits)}")
     if said:
         chapter.find(f"Of patches placed into each other at random, the published radius missed something in {listed(said)}.")
-    # A rate of 0 means little unless smaller radii miss something in the same placements.
+    # Smaller radii should miss pairs in the same placements. Otherwise a rate of 0 shows nothing.
     words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
              for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
     if words:

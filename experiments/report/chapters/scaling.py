@@ -2,8 +2,8 @@
 from frame import *  # noqa: F403: a chapter uses most of it
 
 METHODS = ["FAR (OBB)", "Boxes", "CULLIDE", "I-COLLIDE", "exact"]
-CROWD, DENSE = "crowd:[^:]*", "crowd:[^:]*:[^:]*"  # patterns of scenes
-# For each plot: title, label of the axis, pattern of its scenes, column of the size.
+CROWD, DENSE = "crowd:[^:]*", "crowd:[^:]*:[^:]*"  # regular expressions for names of scenes
+# For each plot: title, label of the x axis, regular expression of its scenes, column with the size.
 PLOTS = {"objects": ("objects: crowd:N", "objects", CROWD, "objects"),
          "triangles": ("triangles: torii:N", "triangles", "torii:.*", "triangles"),
          "resolution": ("resolution: two-spheres", "resolution (px)", "two-spheres", "resolution"),

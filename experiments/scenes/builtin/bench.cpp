@@ -1,5 +1,5 @@
-// Scenes for benchmarks: a field of blobs of any size, needles with millions of overlapping boxes,
-// and scenes with an extreme aspect ratio, gap or ratio of sizes.
+// Scenes for benchmarks: a field of any number of blobs, needles with millions of overlapping
+// boxes, and scenes with an extreme aspect ratio, gap or ratio of sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -14,14 +14,14 @@ using namespace shapes;
 
 namespace {
 
-constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
-constexpr double kSpacing = 1.8;           // side of a cell; each cell has one blob
-constexpr double kJitter = 0.3;            // largest shift of a blob in its cell, along each axis
+constexpr std::uint64_t kFieldBlob = 320;  // number of triangles of a blob
+constexpr double kSpacing = 1.8;           // side of a cubic cell; each cell has one blob
+constexpr double kJitter = 0.3;            // largest shift of a blob along each axis
 constexpr std::size_t kShapes = 16;
-constexpr std::uint64_t kPartBlobs = 256;  // blobs of one part
+constexpr std::uint64_t kPartBlobs = 256;  // number of blobs of a part
 
-// Makes the blobs of a field one after the other. Chooses the number of blobs, at least 1, whose
-// triangles are nearest to the wanted number.
+// Makes the blobs of a field one after the other. The number of blobs is at least 1, and gives the
+// number of triangles that is nearest to the wanted number.
 class Blobs {
  public:
   Blobs(std::uint64_t triangles, std::uint64_t seed)
@@ -32,7 +32,7 @@ class Blobs {
   }
   std::uint64_t left() const { return count_ - next_; }
 
-  // Precondition: count <= left().
+  // Appends the next `count` blobs. Precondition: count <= left().
   void append(std::uint64_t count, Scene& scene) {
     scene.objects.reserve(scene.objects.size() + count);
     scene.vertices.reserve(scene.vertices.size() + count * shapes_[0].vertices.size());
@@ -56,17 +56,17 @@ class Blobs {
   Random random_;
   std::vector<Mesh> shapes_;
   std::uint64_t count_, next_ = 0;
-  std::uint64_t cells_ = 1;  // cells along each axis of the cube that the blobs fill
+  std::uint64_t cells_ = 1;  // number of cells along each axis of the cube that the blobs fill
 };
 
 constexpr double kLength = 4700;  // length of a needle
 constexpr double kWidth = 0.002;
-constexpr double kBending = 1e-4;  // largest angle between a needle and Frame::along, radians
-constexpr double kSpan = 24000;    // extent of a layer across its needles
+constexpr double kBending = 1e-4;  // largest angle between a needle and Frame::along, in radians
+constexpr double kSpan = 24000;    // extent of a layer perpendicular to its needles
 constexpr double kShear = 1;       // shift along the needles per unit of shift across them
 constexpr double kGap = 1;         // distance of the two layers
 
-// An orthonormal frame whose first axis is the direction of needles.
+// An orthonormal frame. The first axis is the direction of needles.
 struct Frame {
   Vec3 along, across, up;
 };
@@ -85,7 +85,7 @@ Corners hair(const Frame& frame, Random& random) {
   return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
 }
 
-// Returns a random place in the layer of an object. A layer's thickness is a quarter of the gap.
+// Returns a random position in the layer of an object. A layer's thickness is a quarter of kGap.
 Vec3 in_layer(const Frame& frame, int object, Random& random) {
   const double across = random.between(-kSpan / 2, kSpan / 2);
   const double height = kGap * (object + random.between(-0.125, 0.125));
@@ -134,8 +134,8 @@ Vec3 across(const Vec3& along, Random& random) {
   }
 }
 
-// Returns a triangle in a random direction. Its longest side is 1, and its height over this side is
-// 1 / aspect.
+// Returns a triangle with a random orientation. Its longest side is 1, and its height over this
+// side is 1 / aspect.
 Corners sliver(double aspect, Random& random) {
   const Vec3 along = random.direction();
   const Vec3 start = -0.5 * along;
@@ -199,7 +199,7 @@ BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
     // Moves each new sliver so that it crosses the first object's last sliver. Then moves every
-    // fourth sliver by twice its height in a random direction.
+    // fourth new sliver by twice the height of a sliver in a random direction.
     const Corners other = sliver(aspect, random);
     const Vec3 from = inner_point(other, random);
     Vec3 to = inner_point(first.back(), random);
@@ -215,8 +215,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   std::vector<Corners> large, little;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
-    // Each large triangle gets eight small triangles. Four of them cross the large triangle. The
-    // other four are two small sides away from it.
+    // Each large triangle gets eight small triangles. Four small triangles cross the large
+    // triangle. The other four are at a distance of about twice their side from the large triangle.
     for (int k = 0; k < 8; ++k) {
       Vec3 at = inner_point(large.back(), random);
       if (k % 2 == 1) at += 2 * small * normal_of(large.back());
@@ -226,8 +226,8 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
   return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
 }
 
-// Untilted sheets have the slope z = x/4 + y/8. Heights and tilts are multiples of gap / 8, and the
-// gap is a power of two from 2^-47 to 2^-3. So with at most 2^10 sheets every sum is exact.
+// Sheets without tilt have the slope z = x/4 + y/8. Heights and tilts are multiples of gap/8. The
+// gap is a power of two from 2^-47 to 2^-3. So with up to 2^10 sheets every sum is exact.
 BuiltScene make_stack(const SceneParameters& parameters) {
   const double gap = stack_gap(parameters.second);
   constexpr std::uint32_t kCells = 8;  // cells along a side of a sheet
@@ -247,7 +247,7 @@ BuiltScene make_stack(const SceneParameters& parameters) {
 
 double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
 
-// All coordinates are multiples of 2^-53 in [1/2, 1). The ulp there is 2^-53, so none is rounded.
+// All coordinates are multiples of 2^-53 in [1/2, 1). The ulp there is 2^-53, so each is exact.
 BuiltScene make_gap(const SceneParameters& parameters) {
   const double gap = std::nearbyint(parameters.second) * 0x1p-53;
   std::uint64_t side = 1;
@@ -258,9 +258,9 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // Returns a point of the cell. u and v count eighths of the cell along two axes, `rise` counts
-    // quarters along the third axis, and `by` is added there. The slope u / 32 + v / 64 keeps
-    // every triangle from being edge-on in a view along an axis, where it would cover no pixel.
+    // Returns a point of the cell. u and v count eighths of the cell along two axes. `rise` counts
+    // quarters of the cell along the third axis, and `by` is added. In views along an axis, a
+    // triangle that is edge-on would cover no pixel. The slope u / 32 + v / 64 avoids this.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;

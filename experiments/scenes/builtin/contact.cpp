@@ -1,5 +1,5 @@
-// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, and a part
-// that is cut in two.
+// Scenes for benchmarks with objects in contact: a crumpled sheet, a heap of spheres, and a CAD
+// part that is cut in two.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -140,9 +140,9 @@ std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& ba
   return out;
 }
 
-// Returns balls of radius 0.5 to 1 that have settled in a box without a lid. The mesh of a ball
-// lies inside the ball, so the meshes of balls that just touch are apart. So balls in contact are
-// nearer than the sum of their radii, by the fraction kDeep.
+// Returns balls of radius 0.5 to 1 that have settled in a box without a lid. A mesh lies inside its
+// ball, so the meshes of two balls that just touch are apart. So the distance of balls in contact
+// is (1 - kDeep) times the sum of their radii.
 std::vector<Ball> heap(std::uint64_t count, Random& random) {
   constexpr double kDeep = 0.03;
   constexpr double kSpacing = 1.62;

@@ -1,4 +1,4 @@
-// A cloth that hangs in pleats in a funnel. A larger scene has more triangles in the cloth only, so
+// A cloth that hangs in pleats in a funnel. In larger scenes only the cloth has more triangles, so
 // the triangles of the funnel stay large.
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace shapes;
 
 namespace {
 
-// Returns the number of cells along a side of a grid with about this many triangles.
+// Returns the number of cells along a side of a square grid with about this many triangles.
 std::uint32_t cells_for(std::uint64_t triangles) {
   return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
 }
@@ -20,26 +20,26 @@ std::uint32_t cells_for(std::uint64_t triangles) {
 // The funnel is upright, with a pipe below and a cone above. The cloth in the funnel is a square
 // whose middle was pulled down into the pipe. The unit of length is half the side of the cloth.
 constexpr double kCap =
-    0.22;  // the pleats grow from 0.3 to 1.3 times this distance from the cloth's middle
-constexpr double kPipe = 0.62;   // distance from the cloth's middle at which the cone begins
+    0.22;  // pleats grow between 0.3 and 1.3 times this distance from the cloth's middle
+constexpr double kPipe = 0.62;   // distance from the cloth's middle where the cone begins
 constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
 constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
 constexpr std::uint32_t kPleats = 14;
 
-// The points of the cloth at one distance from its middle. Seen from above, they form a
-// sine-generated curve: its direction swings by +-`swing` radians. The curve is as long as the
-// circle of this radius in the flat cloth, but goes around a smaller circle.
+// The points of the cloth at one distance from its middle. Seen from above, these points form a
+// sine-generated curve, whose direction swings by +-`swing` radians. The curve is as long as the
+// circle of these points in the flat cloth, but goes around a smaller circle.
 struct Ring {
-  double radius = 0, height = 0;             // mean values
+  double radius = 0, height = 0;             // mean values over the points
   std::vector<std::array<double, 2>> pleat;  // points (along, outward) of one pleat of unit length
 };
 
-constexpr std::uint32_t kSteps = 64;  // segments of the curve in Ring::pleat
+constexpr std::uint32_t kSteps = 64;  // number of segments of the curve in Ring::pleat
 constexpr std::uint32_t kRings = 600;
 constexpr double kReachOfCloth = 1.5;  // distance of the last ring from the middle; above sqrt(2)
 
-// Returns the mean of cos(swing sin(u)) over u: the Bessel function J0(swing). It falls from 1 to 0
-// while the swing grows from 0 to 2.4.
+// Returns the mean of cos(swing sin(u)) over u: the Bessel function J0(swing). The mean falls from
+// 1 to 0 while the swing grows from 0 to 2.4.
 double advance(double swing) {
   double sum = 0;
   for (std::uint32_t k = 0; k < kSteps; ++k) sum += std::cos(swing * std::sin(kTurn * k / kSteps));
@@ -85,8 +85,8 @@ std::vector<Ring> rings() {
   return out;
 }
 
-// Returns the position of a point of the hung cloth. In the flat square, the point is at distance s
-// from the middle and at angle `turns`, in turns. uneven: shift of the pleats, in pleats.
+// Returns the position of a point of the hung cloth. In the flat cloth, the polar coordinates of
+// the point are s and `turns` (an angle in turns). uneven: shift of the pleats, in pleats.
 Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
   const double row = s / kReachOfCloth * kRings;
   const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);
@@ -116,7 +116,7 @@ struct FunnelGrid {
   std::uint64_t triangles() const { return 2ull * around * (pipe_rings + cone_rings); }
 };
 
-// Returns a surface of revolution around all points, `gap` away from the nearest point.
+// Returns a surface of revolution around all points. Its distance to the nearest point is `gap`.
 Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid& quads) {
   const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
   const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);
@@ -126,7 +126,7 @@ Mesh funnel_around(const std::vector<Vec3>& points, double gap, const FunnelGrid
     pipe = std::max(pipe, r - slope * std::max(0.0, p.z() - begin));
     top = std::max(top, p.z());
   }
-  // A ring's sides are nearer to the axis than its corners. So the corners are moved outward.
+  // The sides of a ring are nearer to the axis than its corners, so the corners are moved outward.
   const double widen = 1 / std::cos(kTurn / 2 / quads.around);
   std::vector<std::array<double, 2>> profile;  // radius, height
   for (std::uint32_t k = 0; k <= quads.pipe_rings; ++k)
@@ -158,7 +158,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   constexpr std::size_t kWaves = 3;
   Random random(seed);
   const double turned = random.unit();
-  std::array<std::array<double, 3>, kWaves> waves;  // amplitude in pleats, phase, twist
+  std::array<std::array<double, 3>, kWaves> waves;  // amplitude in pleats, phase in turns, twist
   for (auto& [height, phase, twist] : waves) {
     height = random.between(0.15, 0.3);
     phase = random.unit();
@@ -171,7 +171,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   Mesh mesh = grid(cells);
   const std::vector<Ring> table = rings();
   for (Vec3& p : mesh.vertices) {
-    // Shifts the cloth, so that its middle lies on no grid line.
+    // Shifts the cloth, so that the middle of the pleats lies on no grid line.
     const double x = 2 * p.x() - 1 + 0.013, y = 2 * p.y() - 1 + 0.007;
     const double s = std::sqrt(x * x + y * y);
     const double angle = std::atan2(y, x) / kTurn + 0.5;

@@ -17,7 +17,7 @@ Mesh tetrahedron() {
                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
 }
 
-// Returns a triangle of length 1 and the given width. Its long axis has a random direction.
+// Returns a triangle with a longest side of 1 and the given width. Its direction is random.
 Corners needle(Random& random, double width) {
   const Vec3 along = random.direction();
   const Vec3 aside = across(along, width, random);
@@ -34,8 +34,8 @@ Scene make_two_spheres() {
 }
 
 Scene make_two_tori() {
-  // The two rings are linked, and their centre circles are 0.5 apart. So the tubes around these
-  // circles, of radius 0.35, intersect.
+  // The two rings are linked, and their centre circles are 0.5 apart. The tubes around these
+  // circles have radius 0.35, so they intersect.
   const Mesh mesh = torus(1, 0.35, 100, 50);
   return two_objects("two-tori", "first", mesh, "second", mesh,
                      {.scale = {},
@@ -58,7 +58,7 @@ Scene make_random_soup(std::uint64_t seed) {
   return scene.finish();
 }
 
-constexpr std::uint64_t kAxial = kGolden;  // seed ^ kAxial is the seed of slivers along the axes
+constexpr std::uint64_t kAxial = kGolden;  // seed ^ kAxial is the seed for slivers along the axes
 
 Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
 
@@ -68,7 +68,7 @@ Corners axial_needle(std::uint32_t k, double width, Random& random) {
   return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
 }
 
-// Moves two of the four objects. The second object turns. Each sliver of the fourth object slides
+// Moves two of the four objects. The second object rotates. Each sliver of the fourth object slides
 // along its long axis.
 Motion turning_and_sliding(const Scene& scene) {
   return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
@@ -91,7 +91,7 @@ Motion turning_and_sliding(const Scene& scene) {
 }
 
 // size: number of slivers in each of the two oblique objects. A larger scene begins with the same
-// slivers, bit for bit. Each of the two objects along the axes has 3/8 as many slivers.
+// slivers, bit for bit. Each of the other two objects has 3/8 as many slivers along the axes.
 BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
@@ -99,8 +99,8 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
-    // Of every four slivers, three are placed so that they cross a sliver of the first object. One
-    // of the three is then moved away by twice the smaller width. The fourth has a random place.
+    // Of every four slivers, three cross a sliver of the first object, and the fourth has a random
+    // position. Then the third of the four is moved away by twice the smaller width.
     const double other_width = random.over_octaves(20);
     const Corners other = needle(random, other_width);
     if (i % 4 == 3) {
@@ -112,7 +112,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
-  // Makes two objects whose slivers are parallel to the axes. Each sliver crosses a sliver of the
+  // Makes two objects with slivers along the coordinate axes. Each sliver crosses a sliver of the
   // other object. All nine combinations of two axes occur in turn.
   Random axial(seed ^ kAxial);
   std::vector<Corners> third;
@@ -140,7 +140,7 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
 Scene make_degenerate() {
   constexpr double kHair = 0x1p-40;
   const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-  // The comment at each pair names the kind of contact. Most coordinates are whole numbers.
+  // The comment at each pair states the kind of contact. Most coordinates are whole numbers.
   const std::vector<std::pair<Corners, Corners>> cases = {
       {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
       {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge

@@ -1,7 +1,7 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks. Two scenes are from papers, and use
-// a dragon with refined triangles. In one, a bunny falls through the dragon (FAR: Govindaraju, Lin
-// and Manocha, VRST 2004). In the other, the dragon breaks into pieces (CULLIDE: Govindaraju,
-// Redon, Lin and Manocha, Graphics Hardware 2003).
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Two scenes are from papers and use
+// a dragon with refined triangles. In one scene, a bunny falls through the dragon (FAR:
+// Govindaraju, Lin and Manocha, VRST 2004). In the other scene, the dragon breaks into pieces
+// (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdlib>
@@ -36,8 +36,8 @@ constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
 
-// Returns a placement for the second mesh. The placed mesh's box has the diagonal and the centre of
-// the first mesh's box.
+// Returns a placement for the second mesh. Its bounding box then has the same centre and the same
+// diagonal length as the first mesh's box.
 Placement onto(const Mesh& first, const Mesh& second) {
   const double scale = diagonal(bounds(first)) / diagonal(bounds(second));
   return {.scale = Vec3(Vec3::Constant(scale)),
@@ -68,8 +68,8 @@ Scene make_dragon_bunny() {
   return two_objects("dragon-bunny", "dragon", dragon, "bunny", bunny, onto(dragon, bunny));
 }
 
-// Returns a mesh and a copy that is moved by `diagonals` diagonals of the mesh's box along (2, 3,
-// 6). This vector has length 7 and is parallel to no axis.
+// Returns a mesh and a copy of the mesh. The copy is moved along (2, 3, 6) by `diagonals` times the
+// diagonal of the mesh's box. The vector has length 7 and is parallel to no axis.
 Scene with_copy(const std::string& name, const char* file, const char* first, const char* second,
                 double diagonals) {
   const Mesh mesh = packaged(file);
@@ -86,17 +86,17 @@ Scene self_colliding(const std::string& name, const char* file) {
   return scene;
 }
 
-constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
+constexpr std::uint64_t kPackagedDragon = 19'994;  // number of triangles
 constexpr std::uint32_t kPieces = 200;
-constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // first and last time a piece comes off
+constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times of the first and last break
 
 struct Piece {
   MeshPart part;
   std::vector<std::uint32_t> source_face;
   Vec3 middle;      // middle of the piece's box
   double late = 0;  // the time when the piece comes off
-  Vec3 way;         // velocity, without the speed of falling
-  Vec3 axis;        // axis of its rotation
+  Vec3 way;         // velocity at the break; then the piece falls
+  Vec3 axis;        // axis of the piece's rotation
   double turn = 0;  // radians per unit of time
 };
 
@@ -170,7 +170,7 @@ std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
 }
 
 // Sets the objects of the scene after the first `off` pieces have come off: the rest of the dragon,
-// then these pieces. All objects are where they were in the whole dragon.
+// then these pieces. All objects have the positions that they had in the whole dragon.
 void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
   scene.vertices.clear();
   scene.triangles.clear();
@@ -187,7 +187,7 @@ void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
 void break_at(const Breaking& dragon, double time, Scene& scene) {
   std::size_t off = 0;  // the last piece stays
   while (off + 1 < kPieces && dragon.pieces[off].late <= time) ++off;
-  // The number of objects determines which triangles the scene has.
+  // The number of objects determines the topology: which triangles the scene has.
   if (scene.objects.size() != off + 1) set_topology(dragon, off, scene);
   std::size_t v = scene.vertices.size();
   for (std::size_t s = 0; s < off; ++s) v -= dragon.pieces[s].part.vertices.size();
@@ -217,7 +217,7 @@ BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
                                built.scene.vertices.end());
   const Box small = bounds(bunny);
   const double way = place.hi.y() - place.lo.y() +
-                     scale * (small.hi.y() - small.lo.y());  // length of the bunny's way down
+                     scale * (small.hi.y() - small.lo.y());  // distance that the bunny falls
   built.motion = [rest, first, way, from = Vec3(scale * centre(small)), to = centre(place)](
                      const Instant& now, Scene& out, FrameNotes&) {
     const Eigen::Matrix3d turned =

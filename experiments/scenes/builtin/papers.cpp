@@ -1,7 +1,7 @@
-// Scenes that move. Most imitate the shapes, counts and motions of scenes in papers, with generated
-// meshes: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics
-// Hardware 2003); falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST
-// 2004).
+// Scenes that move. Most scenes imitate the shapes, numbers and motions of scenes in papers, with
+// generated meshes: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin and Manocha,
+// Graphics Hardware 2003); falling leaves and a simulated cloth (FAR: Govindaraju, Lin and Manocha,
+// VRST 2004).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 // The closed path of an object in a box, from time 0 to time 1.
 struct Way {
   Vec3 centre;
-  Vec3 reach;  // largest distance from the centre along each axis
+  Vec3 reach;  // amplitude of the motion along each axis
   Vec3 phase;  // phases of the motion along the axes, in turns
   Vec3 axis;   // axis of the object's rotation
   double turns = 1;
@@ -46,7 +46,7 @@ Way draw_way(double room, double reach, Random& random) {
 }
 
 // Makes a scene of objects of one shape. Each object moves along its own Way. `deformed` returns
-// the place of a vertex of the shape at a time, in the coordinates of the object.
+// the position of a vertex of the shape at a time, in the coordinates of the object.
 template <class Deformed>
 BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
                          std::vector<Way> ways, Deformed deformed) {
@@ -66,8 +66,8 @@ BuiltScene on_their_ways(const std::string& name, const std::string& object, con
   return halfway(std::move(built));
 }
 
-// Returns an open tube of radius 1 about the z axis, from z = 0 to 1. It has `along` x `around`
-// cells of two triangles. Vertex i * around + j is at height i / along.
+// Returns an open tube of radius 1 about the z axis, from z = 0 to 1. The tube has `along` x
+// `around` cells of two triangles. Vertex i * around + j is at height i / along.
 Mesh tube(std::uint32_t around, std::uint32_t along) {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -88,8 +88,8 @@ Mesh tube(std::uint32_t around, std::uint32_t along) {
   return finished(std::move(vertices), std::move(triangles));
 }
 
-// Returns the numbers of steps along and around a torus with about this many triangles. Prefers
-// steps that give exactly this many triangles.
+// Returns the numbers of cells around the ring and around the tube of a torus with about this many
+// triangles. If possible, the torus has exactly this many triangles.
 std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
   const std::uint64_t cells = triangles / 2;
   const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
@@ -104,7 +104,7 @@ std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
 // ---- the tree: a trunk, 7 branches, 6 twigs on each, all tubes of 8 by 5 cells ----
 
 constexpr int kBranches = 7, kTwigs = 6;
-constexpr double kTrunk = 3;  // height
+constexpr double kTrunk = 3;  // height of the trunk
 
 struct Wood {
   Vec3 from, to;
@@ -151,7 +151,7 @@ Mesh make_tree(Random& random) {
   return finished(std::move(tree.vertices), std::move(tree.triangles));
 }
 
-// Returns a leaf of 10 by 10 cells. It is 0.24 long and arched, with a blunt tip and stem.
+// Returns an arched leaf of 10 by 10 cells. It is 0.24 long, with a blunt tip and a blunt stem.
 Mesh make_leaf() {
   Mesh leaf = grid(10);
   for (Vec3& p : leaf.vertices) {
@@ -166,7 +166,7 @@ Mesh make_leaf() {
 struct Leaf {
   Vec3 from;
   double late = 0;   // the time when the leaf comes off
-  double sway = 0;   // largest move to the side
+  double sway = 0;   // amplitude of the sideways motion
   double phase = 0;  // phase of the sway, in turns
   Vec3 axis;         // axis of the leaf's rotation
   double turns = 0;  // turns per unit of time while the leaf falls
@@ -189,7 +189,7 @@ BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed)
                        });
 }
 
-// size: wanted number of triangles of a torus; a grid may give a few more or less.
+// size: wanted number of triangles of a torus. The grid may have a few more or fewer triangles.
 BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Way> ways;
@@ -244,8 +244,8 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   return halfway(std::move(built));
 }
 
-// ---- open sheets, for which no argument about closed meshes holds, and which are too close to
-// each other for a depth buffer of 24 bits ----
+// ---- Open sheets. Arguments about closed meshes do not hold for these sheets, and a depth buffer
+// of 24 bits cannot separate them. ----
 
 constexpr std::uint32_t kCells = 18;  // cells along a side; the side is 1 long
 constexpr double kGrain = 0x1p-40;    // heights are multiples of kGrain
@@ -254,7 +254,7 @@ std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j
 
 // Returns a square of 18 by 18 cells of two triangles, with two flaps of 12 by 1 cells. The flaps
 // are joined to the grid lines i = 6 and i = 12, so three triangles meet at each edge of a joint. A
-// flap lies over the next row of cells. Vertices of flaps come last; make_shells() raises these
+// flap lies over the next row of cells. Vertices of flaps come last, and make_shells() raises these
 // vertices.
 Mesh sheet() {
   auto [vertices, triangles, source_face, group, group_names, folded, notes] = grid(kCells);
@@ -277,7 +277,7 @@ double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain;
 
 // size: number of sheets. All heights are multiples of 2^-40 below 2^10, so sums with the gap
 // (2^-34) are exact. A sheet of the stack is an exact copy of the sheet below, moved up by the gap.
-// So the two sheets never meet. A flap rises by half a gap, so it does not meet the sheet above.
+// So these two sheets never meet. Flaps rise by half a gap, so no flap meets the sheet above.
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   static_assert(kShellGap / 2 >= kGrain);
   const Mesh shape = sheet();
@@ -306,8 +306,8 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
         if (s < stacked) {
           lift += static_cast<double>(s) * kShellGap;
         } else {
-          // The sheet is tilted: one side lies below the stack, the other side above the stack. The
-          // direction of the tilt turns with time.
+          // The sheet is tilted: one side is below the stack, and the other side is above the
+          // stack. The direction of the tilt rotates with time.
           const double turn = kTurn * (now.time + phases[s]);
           const double across =
               0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);
@@ -336,7 +336,7 @@ FrameNotes notes_of(const ClothReport& report) {
           .warning = report.warning};
 }
 
-// size: wanted number of triangles (the grid has nearly as many); second: stiffness, N/m.
+// size: wanted number of triangles; the grid has nearly as many. second: stiffness, N/m.
 BuiltScene make_cloth(const SceneParameters& parameters) {
   ClothSettings settings;
   settings.triangles = parameters.size;

@@ -22,7 +22,7 @@ struct ObjectAtRest {
   std::vector<std::uint32_t> vertices;  // each vertex once
 };
 
-// The scene without frames. A motion computes the vertices of each instant from these vertices.
+// The scene at rest. A motion computes the vertices at each instant from these vertices.
 struct Rest {
   std::vector<Vec3> vertices;
   std::vector<ObjectAtRest> parts;
@@ -63,7 +63,7 @@ std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const 
 double second_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
   const SceneSecond& range = *entry.second;
   const std::optional<double> value = parse_number<double>(word);
-  // NaN fails these comparisons, so it is refused.
+  // The comparisons are false for NaN, so NaN is refused.
   if (!value || !(*value >= range.least && *value <= range.most)) {
     throw Error(name, quote_token(word) + " is no " + range.what,
                 fmt::format("give {:g} to {:g}, as in {}:{}:{:g}", range.least, range.most,
@@ -72,7 +72,7 @@ double second_of(const BuiltinScene& entry, const std::string& name, const std::
   return *value;
 }
 
-// Returns the numbers in NAME:SIZE:SECOND. Throws Error naming the scene.
+// Parses the numbers in NAME:SIZE:SECOND. Throws Error naming the scene.
 SceneParameters parameters_of(const BuiltinScene& entry, const std::string& name) {
   const std::vector<std::string> words = split_list(name.substr(0, name.find('@')), ':');
   SceneParameters out = entry.usual();
@@ -94,7 +94,7 @@ std::string suffix_names() {
   return names + " or, for scenes that are drawn, " + kSeedSuffix + "N";
 }
 
-// Returns the number N of @seedN. Throws Error naming the scene.
+// Parses the number N of @seedN. Throws Error naming the scene.
 std::uint64_t seed_of_suffix(const BuiltinScene& entry, const std::string& name,
                              const std::string& word) {
   if (!entry.seed) {

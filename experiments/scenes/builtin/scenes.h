@@ -1,5 +1,5 @@
-// Built-in scenes, which need no file of the user. Some are generated, and are the same on every
-// run. Others are made of the packaged meshes. Some scenes move.
+// Built-in scenes, which need no file of the user. Some scenes are generated and are the same on
+// every run. Other scenes are made of the packaged meshes. Some scenes move.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace farcull {
 
-/// The numbers in the name of a scene, as in crowd:3000:0.2. A number that is left out has its
-/// usual value. A number that the scene does not take is 0.
+/// The numbers in the name of a scene, as in crowd:3000:0.2. If the name lacks a number, the usual
+/// value is used. If the scene does not take a number, its value is 0.
 struct SceneParameters {
   std::uint64_t size = 0;
   double second = 0;
-  std::optional<std::uint64_t> seed = {};  // the N of @seedN; empty: the scene uses its own seed
+  std::optional<std::uint64_t> seed = {};  // N of @seedN; empty: the scene uses its own seed
 };
 
 /// The range of the first number, as in field:1000000.
@@ -26,7 +26,7 @@ struct SceneSize {
   std::uint64_t usual = 0;  // used if the name has no number
 };
 
-/// The range of the second number, with both ends.
+/// The range of the second number; both ends are included.
 struct SceneSecond {
   std::string what;  // what the number measures, such as "stiffness in N/m"
   double least = 0;
@@ -40,7 +40,7 @@ struct Instant {
   double time = 0;  // 0 to 1
 };
 
-/// Numbers, such as energies, and a warning that a motion reports for a frame.
+/// Numbers (such as energies) and a warning that a motion reports for a frame.
 struct FrameNotes {
   std::vector<std::pair<std::string, double>> values;  // the same names in every frame
   std::string warning;                                 // empty: no warning
@@ -48,12 +48,12 @@ struct FrameNotes {
 
 /// Moves the scene to an instant. The scene is BuiltScene::scene or the result of an earlier call.
 /// If triangles and objects do not change, only Scene::vertices is written, in place. The result
-/// does not depend on earlier calls. A simulation that is set to an earlier frame recomputes all
+/// does not depend on earlier calls. To go back to an earlier frame, a simulation recomputes all
 /// frames from 0 on. Throws Error if the scene cannot be computed.
 using Motion = std::function<void(const Instant&, Scene&, FrameNotes&)>;
 
 struct BuiltScene {
-  Scene scene;    // the scene that is used if the user names no frames
+  Scene scene;    // the scene if the user names no frames
   Motion motion;  // empty: nothing moves
 };
 
@@ -68,17 +68,17 @@ struct BuiltinScene {
   bool costly = false;            // true: at its usual size, the scene is too large for tests
   bool topology_changes = false;  // triangles and objects differ between frames
   bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
-  std::optional<std::uint64_t> seed = {};  // seed of the scene; empty: nothing in it is random
+  std::optional<std::uint64_t> seed = {};  // the scene's own seed; empty: nothing is random
   std::function<BuiltScene(const SceneParameters&)> build =
-      {};  // makes the scene, whose name is BuiltinScene::name
+      {};  // makes a scene with the name BuiltinScene::name
 
   SceneParameters usual() const;
   Scene make() const { return build(usual()).scene; }
 };
 
 /// The change that a suffix makes to a scene. Every vertex is multiplied by `scale` and moved by
-/// `translate`, in double. Then, if `ground` is set, an object "ground" is added: two triangles
-/// with these corners.
+/// `translate`, in double. Then, if `ground` is set, an object "ground" of two triangles with these
+/// corners is added.
 struct SceneChange {
   double scale = 1;
   Vec3 translate = Vec3::Zero();
@@ -89,20 +89,20 @@ void apply(const SceneChange& change, Scene& scene);
 
 Scene transformed(Scene scene, double scale, const Vec3& translate);
 
-/// A suffix for any built-in scene, as in two-spheres@far. Several are applied left to right.
+/// A suffix for any built-in scene, as in two-spheres@far. Suffixes are applied from left to right.
 struct SceneSuffix {
   std::string suffix;       // begins with @
   std::string description;  // one line
-  /// Computes the change from the scene without frames. The same change applies to all frames.
+  /// Computes the change from the scene at rest. The same change applies to all frames.
   std::function<SceneChange(const Scene&)> change;
 };
 const std::vector<SceneSuffix>& scene_suffixes();
 
-/// All built-in scenes, generated ones first. The list is made once.
+/// All built-in scenes. Generated scenes come first. The list is made once.
 const std::vector<BuiltinScene>& builtin_scenes();
 
 // These functions return the parts of builtin_scenes(). All paper_scenes() move. If the user names
-// no frames, these scenes, except the cloth, are in the middle of their motion.
+// no frames, these scenes (except the cloth) are at the middle of their motion.
 std::vector<BuiltinScene> generated_scenes();
 std::vector<BuiltinScene> bench_scenes();
 std::vector<BuiltinScene> contact_scenes();
@@ -110,11 +110,11 @@ std::vector<BuiltinScene> paper_scenes();
 std::vector<BuiltinScene> extreme_scenes();
 std::vector<BuiltinScene> packaged_scenes();
 
-/// Returns the scene of this name; null if there is no such scene. Only the part of the name before
-/// the first ':' or '@' is used.
+/// Returns the scene of this name, or null if there is no such scene. Only the part of the name
+/// before the first ':' or '@' is used.
 const BuiltinScene* find_builtin_scene(const std::string& name);
 bool is_builtin_scene(const std::string& name);
-/// Returns a remedy: "did you mean two-spheres? " if a built-in scene has a similar name; otherwise
+/// Returns a remedy: "did you mean two-spheres? " if a built-in scene has a similar name, otherwise
 /// "correct the name; ".
 std::string likely_name(const std::string& name);
 
@@ -142,23 +142,23 @@ bool has_motion(const std::string& name);
 
 std::string moving_names();
 
-/// A built-in scene that moves, frame by frame. A motion along a path has time 0 in frame 0, and
-/// time 1 in the last frame. A frame of a simulation is a time step.
+/// A built-in scene that moves. A motion along a path has time 0 in frame 0 and time 1 in the last
+/// frame. In a simulation, a frame is a time step.
 class MovingScene {
  public:
   /// frames: number of frames, >= 1. self: every object is also tested against itself. Throws Error
-  /// as make_builtin_scene() does, and if nothing moves.
+  /// as make_builtin_scene() does. Throws Error if nothing in the scene moves.
   explicit MovingScene(const std::string& name, long frames, bool self = false);
-  /// Makes frames of a scene that is not built in. Precondition: the scene has a motion.
+  /// Makes frames of a scene that is not built in. Precondition: built.motion is not empty.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
-  /// Returns the scene at a frame, validated. Every call returns the same Scene object. Its
-  /// triangles and vertices stay in the same memory if triangles and objects did not change since
-  /// the previous call. A ground added by a suffix does not move. Throws Error as Motion does.
+  /// Returns the scene at a frame, validated. Every call returns the same Scene object. If
+  /// triangles and objects did not change since the previous call, triangles and vertices stay in
+  /// the same memory. A ground added by a suffix does not move. Throws Error as Motion does.
   const Scene& at(long frame);
 
-  /// Returns the motion's notes on the last frame from at(), such as energies. Most motions have no
-  /// notes.
+  /// Returns the motion's notes on the frame of the last call of at(), such as energies. Most
+  /// motions have no notes.
   const std::vector<std::pair<std::string, double>>& notes() const { return notes_.values; }
   const std::string& warning() const { return notes_.warning; }
 
@@ -176,15 +176,15 @@ inline constexpr const char* kBunny = "bunny00.off";
 inline constexpr const char* kDragon = "ChineseDragon-10kv.off";
 
 /// Returns the folder of the packaged meshes: the value of the environment variable FARCULL_MESHES.
-/// If this value is empty, returns the folder that was given when farcull was built.
+/// If this variable is empty or not set, returns the folder that was set when farcull was built.
 std::string mesh_folder();
 
-/// Reads a file of mesh_folder(). Throws Error if that fails.
+/// Reads a file of mesh_folder(). Throws Error if the file cannot be read.
 Mesh packaged(const char* file);
 
-/// Calls take() with the parts of the scene "field" one after the other, so that memory does not
-/// grow with the scene. A part is a scene with the given name and some consecutive objects; take()
-/// may change it. All parts together equal the scene, bit for bit.
+/// Calls take() with one part of the scene "field" after the other, so that memory does not grow
+/// with the scene. A part is a scene with the given name and some consecutive objects. take() may
+/// change the part. All parts together equal the scene, bit for bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
 
@@ -196,7 +196,7 @@ inline constexpr double kShellGap = 0x1p-34;
 /// crosses its neighbours. The pairs of `gap` collide if the rounded second number is 0 or less.
 BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_stack(const SceneParameters& parameters);
-/// Returns the power of two nearest to the wanted gap of the stack, so that no height is rounded.
+/// Returns the power of two nearest to the wanted gap of the stack, so that all heights are exact.
 double stack_gap(double wanted);
 BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
 BuiltScene make_gap(const SceneParameters& parameters);
@@ -210,8 +210,8 @@ Scene two_objects(const std::string& name, const char* first, const Mesh& one, c
 /// Returns the scene, moved to the middle of its motion.
 BuiltScene halfway(BuiltScene built);
 
-/// Wraps a function that makes a scene. The function takes nothing or the seed, and returns a
-/// Scene. Or it takes the parameters, or parameters and seed, and returns a BuiltScene.
+/// Wraps a function that makes a scene. The function may take nothing or a seed, and returns a
+/// Scene. Or the function takes parameters, or parameters and a seed, and returns a BuiltScene.
 struct SceneMaker {
   template <class Make>
   SceneMaker(Make function) {
@@ -233,17 +233,17 @@ SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&));
 
 inline constexpr bool kCostly = true, kChanges = true;
 /// Returns a row of the table of built-in scenes. The arguments are members of BuiltinScene. seed:
-/// used if the name gives no seed; 0 if nothing in the scene is random.
+/// used if the name contains no seed; 0 if nothing in the scene is random.
 BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
                    const char* description, std::uint32_t objects, std::uint32_t triangles,
                    const char* motion = "", const SceneSize& size = {},
                    const SceneSecond& second = {}, bool costly = false,
                    bool topology_changes = false);
 
-/// In this motion, the second object approaches from the side, passes through the first, and leaves
-/// on the other side. rest: the scene without frames; its objects share no vertex.
+/// In this motion, the second object approaches from the side, passes through the first object, and
+/// leaves on the other side. rest: the scene at rest; its objects share no vertex.
 Motion pass_through(const Scene& rest);
-/// In this motion, all objects swell and shrink, out of phase, and waves run along them.
+/// In this motion, all objects swell and shrink, out of phase, and waves run along their surfaces.
 Motion pulse(const Scene& rest);
 /// In this motion, each object moves away by up to the diagonal of its box, and returns.
 Motion drift(const Scene& rest);

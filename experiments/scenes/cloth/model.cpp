@@ -1,4 +1,4 @@
-// Builds the cloth, and evaluates the terms of a time step with their derivatives.
+// Builds the model of a cloth, and computes the energies, gradient and Hessian blocks of a step.
 #include "experiments/scenes/cloth/cloth.h"
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 namespace farcull::cloth {
 namespace {
 
-// The ratio of Model::crimp to the product of a cell's weight and side. So an edge that is slack by
-// 1e-4 of its length pulls with 1e-4 of the cell's weight.
+// The ratio of Model::crimp to the product of a cell's weight and side. With this ratio, an edge
+// that is slack by 1e-4 of its length pulls with 1e-4 of a cell's weight.
 constexpr double kCrimp = 1e-8;
 
 void check(bool good, const char* what, double value, const char* range) {
@@ -69,7 +69,7 @@ void add_triangles(Model& model) {
 }
 
 // Places the cloth flat above the sphere, a little off the sphere's centre. Adds small random
-// heights, far below the size of a cell. Otherwise rounding would decide where the cloth folds.
+// heights, far below the size of a cell. Otherwise rounding errors would place the folds.
 void place(Model& model) {
   const ClothSettings& s = model.settings;
   const std::uint32_t m = model.cells;
@@ -86,14 +86,14 @@ void place(Model& model) {
   }
 }
 
-// Adds the hinge of edge a-b; c and d are the opposite corners of its two triangles. The weights
-// give the point where the line through c and d meets the edge. If the edge is a diagonal of a
-// cell, this point is the middle of the edge. Otherwise the triangles are mirror images, and the
-// point is an end of the edge.
+// Adds the hinge of edge a-b. Its two triangles have the opposite corners c and d. The weights of a
+// and b give the point where the segment c-d meets the edge. If the edge is a diagonal of a cell,
+// this point is the middle of the edge. Otherwise the triangles are mirror images, and the point is
+// an end of the edge.
 void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const std::uint32_t side = model.cells + 1;
   const bool diagonal = a / side != b / side && a % side != b % side;
-  // This stiffness gives the cloth the bending rigidity of a plate (docs/cloth.md, "Model").
+  // This stiffness gives the cloth the bending rigidity of the settings (docs/cloth.md, "Model").
   const double cell = model.settings.side / model.cells;
   const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
   Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
@@ -123,7 +123,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Returns the energy of the convex spring minus buckling_load * l^2 / 2, shifted to 0 at rest.
+// Returns the energy (J) of a spring of length l, shifted to 0 at the spring's rest length.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;

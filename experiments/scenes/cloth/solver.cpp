@@ -1,5 +1,5 @@
-// Minimizes the function of a step, by Newton's method with a line search, or by interior points
-// with the scaling of Nesterov and Todd (docs/cloth.md, "Solver").
+// Minimizes the function of a time step by Newton's method with a line search, or by an
+// interior-point method with the scaling of Nesterov and Todd (docs/cloth.md, "Solver").
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ double determinant(const ConePoint& u) {
 }
 
 double reach(const ConePoint& u, const ConePoint& du) {
-  // Finds the least a > 0 at which t or the determinant of u + a du is 0. The determinant is
+  // Finds the least a > 0 at which t or the determinant of u + a du is 0. The determinant equals
   // c + 2 b a + q a^2 with c > 0.
   const double q = determinant(du);
   const double b = u.t * du.t - u.d.dot(du.d);
@@ -37,22 +37,22 @@ double reach(const ConePoint& u, const ConePoint& du) {
 
 namespace {
 
-constexpr double kWidth = 1e-2;          // initial distance into the cone, in spring lengths
-constexpr double kToTheBoundary = 0.95;  // a move takes this fraction of the way to the boundary
+constexpr double kWidth = 1e-2;          // initial distance from the boundary, in spring lengths
+constexpr double kToTheBoundary = 0.95;  // a step goes this fraction of the way to the boundary
 
-// The unknowns of the interior-point method. A spring has a point u of the cone and a dual point z;
-// its complementarity is u.z, in J. A contact has a distance s and a force f; its complementarity
-// is s f, in J. At the minimum each complementarity is about Model::crimp.
+// The unknowns of the interior-point method. Each spring has a point u of the cone and a dual point
+// z; the complementarity is the inner product u.z (J). Each contact has a distance s and a force f;
+// the complementarity is s f (J). At the minimum a complementarity is about Model::crimp.
 class Interior {
  public:
-  // Starts inside the cones at the positions x; each complementarity has the given value, J. The
-  // step must outlive this object.
+  // Starts at the positions x. Chooses the other unknowns inside the cones, so that each
+  // complementarity has the given value (J). The step must outlive this object.
   Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
 
-  // The mean of the complementarities, J.
+  // Returns the mean of the complementarities (J).
   double complementarity() const;
 
-  // Sets up the linear equations for a search direction that aims at complementarity `target`.
+  // Sets up the linear equations for a search direction that aims at complementarity `target` (J).
   // Eliminates the unknowns of springs and contacts. The next four functions return the blocks and
   // forces that springs and contacts add to the equations of the positions.
   void linearize(const Eigen::VectorXd& x, double target);
@@ -76,12 +76,12 @@ class Interior {
   struct SpringState {
     double length = 0;  // l* of docs/cloth.md
     ConePoint u, z, du, dz;
-    double across = 0;  // entry (t, t) of the scaling, plus stiffness
+    double across = 0;  // entry (t, t) of the scaling, plus Step::stretch
     double right = 0;   // right-hand side of the equation of t
     Vec3 mixed;         // entries (t, d) of the scaling
     Block whole;        // entries (d, d) of the scaling
-    Block block;        // added to the matrix after t is eliminated
-    Vec3 force;         // added to the force
+    Block block;        // added to the matrix when t is eliminated
+    Vec3 force;         // added to the gradient when t is eliminated
   };
   struct ContactState {
     double stiffness = 0;
@@ -133,8 +133,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
   for (SpringState& spring : springs_) {
     const ConePoint& u = spring.u;
     const ConePoint& z = spring.z;
-    // The scaling W^-2 = eta (2 w w' - J) maps u to z. Here w = J (u/|u| + J z/|z|)/(2 g), J =
-    // diag(1, -1, -1, -1), and |u| is the square root of the determinant of u.
+    // The scaling matrix W^-2 = eta (2 w w^T - J) maps u to z. Here J = diag(1, -1, -1, -1),
+    // w = J (u/|u| + J z/|z|) / (2 g), and |u| is the square root of the determinant of u.
     const double size_u = std::sqrt(determinant(u));
     const double size_z = std::sqrt(determinant(z));
     const double cosine = (u.t * z.t + u.d.dot(z.d)) / (size_u * size_z);
@@ -146,8 +146,8 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.mixed = eta * 2 * wt * wd;
     spring.whole = eta * (2 * wd * wd.transpose() + Block::Identity());
     spring.across = step_.stretch + tt;
-    // du_t follows from two equations: dz = target u^-1 - z - W^-2 du, and du_t = dz_t/c - (t -
-    // length - z_t/c), with c = stretch.
+    // The unknown du_t is eliminated with c = stretch and these two equations:
+    // dz = target u^-1 - z - W^-2 du, and du_t = dz_t/c - (t - length - z_t/c).
     const double inverse = target / (size_u * size_u);
     spring.right =
         inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
@@ -158,7 +158,7 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     ContactState& contact = contacts_[v];
     const double away = step_.normal[v].dot(x.segment<3>(3 * v)) - step_.model.settings.radius;
     contact.scaling = contact.f / contact.s;
-    // The equation s = f/c + away is solved like the equation of a spring, in one dimension.
+    // The equation s = f / stiffness + away is linearized like a spring's equation.
     const double off = contact.s - contact.f / contact.stiffness - away;
     contact.right = (target / contact.s - contact.f) / contact.stiffness - off;
     const double divisor = 1 + contact.scaling / contact.stiffness;
@@ -207,15 +207,15 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
   return way;
 }
 
-constexpr int kTrials = 60;  // most step lengths tried along one direction
-// The constants below change the time of a step, not its result.
-constexpr int kMostIterations = 40;  // Newton iterations before interior points take over
+constexpr int kTrials = 60;  // maximum number of step lengths tried along a direction
+// The constants below change the time that a step takes, but not its result.
+constexpr int kMostIterations = 40;  // maximum number of Newton iterations before interior() runs
 constexpr double kShort = 0.125;     // a step below this fraction of Newton's step is short
-constexpr int kMostShort = 3;        // short steps before interior points take over
-constexpr double kStart = 1;         // initial complementarity / (weight * length)
-constexpr double kEnd = 2;           // final complementarity / crimp: Newton's method is then fast
+constexpr int kMostShort = 3;        // maximum number of short steps before interior() runs
+constexpr double kStart = 1;         // initial complementarity / (weight of a vertex * length)
+constexpr double kEnd = 2;           // final complementarity / crimp; then Newton's method is fast
 
-// Returns the lower triangle of the matrix, with the values that do not depend on x.
+// Returns the lower triangle of the Hessian, with only the terms that do not depend on x.
 Eigen::SparseMatrix<double> pattern(const Model& model) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
@@ -301,8 +301,8 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
 double Solver::tolerance(const Eigen::VectorXd& x) const {
   const ClothSettings& s = model_.settings;
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  // A coordinate has a rounding error of at most 2^-53 |x|. It changes a spring's force by at most
-  // (stiffness + buckling_load) times as much. A vertex has at most 8 springs and 3 coordinates.
+  // A coordinate has a rounding error of at most 2^-53 |x|. A spring's force changes by at most
+  // (stiffness + buckling_load) times this error. A vertex has up to 8 springs, with 2 ends each.
   const double rounding =
       16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
   return s.tolerance * kStandardGravity * heaviest + rounding;
@@ -370,14 +370,14 @@ bool Solver::newton(const Step& step, int iterations, int most_short, Minimum& b
   }
 }
 
-// Moves best.x close to the minimum. If that fails, best.x is unchanged.
+// Moves best.x close to the minimum. On failure, leaves best.x unchanged.
 void Solver::interior(const Step& step, Minimum& best) {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   Eigen::VectorXd x = best.x;
   Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;  // wanted: next complementarity / present complementarity
+  double aim = 0.1;  // desired ratio of the next complementarity to the present one
   for (;;) {
     const double now = interior.complementarity();
     if (now <= kEnd * model_.crimp && aim < 0.2) break;
@@ -422,7 +422,7 @@ Minimum Solver::minimize(const Step& step) {
 namespace farcull {
 namespace {
 
-// Returns the level of the finest shapes::sphere() with at most triangles / 2 triangles.
+// Returns the highest level at which shapes::sphere() has at most triangles / 2 triangles, or 0.
 int sphere_level(std::uint64_t triangles) {
   int level = 0;
   while (20 * (std::uint64_t{4} << (2 * level)) <= triangles / 2) ++level;

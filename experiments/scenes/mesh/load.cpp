@@ -19,7 +19,7 @@
 namespace farcull {
 namespace {
 
-// Formats that are not read, with advice to the user.
+// File formats that farcull cannot read, with advice to the user.
 struct Foreign {
   const char* remedy;
   std::string_view extensions;
@@ -59,7 +59,7 @@ struct Reader {
   std::string_view extension;
   Mesh (*parse)(std::string_view bytes, const std::string& name);
 };
-// In the order of MeshFormat.
+// Readers in the order of the enumerators of MeshFormat.
 constexpr std::array<Reader, 4> kReaders = {
     {{".obj", parse_obj}, {".off", parse_off}, {".ply", parse_ply}, {".stl", parse_stl}}};
 
@@ -74,14 +74,14 @@ Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& n
   return kReaders.at(static_cast<std::size_t>(format)).parse(bytes, name);
 }
 
-// The place for a number in the name of a file: %d or %04d.
+// A placeholder for a number in a file name: %d, or %0Nd with a digit N.
 struct Place {
   std::size_t at = std::string::npos;  // position of the %
   std::size_t size = 0;
   int digits = 1;
 };
 
-// Returns the first place for a number in a name, and whether it is the only place.
+// Returns the first placeholder in a name, and true if the name has exactly one placeholder.
 std::pair<Place, bool> place_in(const std::string& name) {
   Place found;
   int count = 0;
@@ -102,8 +102,8 @@ std::pair<Place, bool> place_in(const std::string& name) {
   return {found, count == 1};
 }
 
-// Returns the absolute path without links; `path` itself if there is no such file. Calls the C
-// library, since std::filesystem needs memory for several paths at once, and a path may be long.
+// Returns the absolute path without symbolic links, or `path` itself if the file does not exist.
+// Calls realpath(), since std::filesystem would need memory for several copies of a long path.
 std::string real_path(const std::string& path) {
   const std::unique_ptr<char, void (*)(void*)> file(::realpath(path.c_str(), nullptr), &std::free);
   return file ? file.get() : path;

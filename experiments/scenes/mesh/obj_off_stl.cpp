@@ -1,7 +1,7 @@
-// Reads Wavefront OBJ, OFF and STL, and writes OFF as Geomview does. Skips materials, normals,
-// colours, texture coordinates, and points and lines of OBJ. Refuses free-form surfaces, since
-// skipping them would lose geometry. A binary STL file may begin with "solid", like an ASCII one.
-// So an STL file whose length fits its header is read as binary.
+// Reads Wavefront OBJ, OFF and STL, and writes OFF. Skips materials, normals, colours, texture
+// coordinates, and points and lines of OBJ. Refuses free-form surfaces, since skipping them would
+// lose geometry. Binary and ASCII STL files may both begin with "solid". So a file is read as
+// binary STL if the number of triangles in its header matches its length.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,8 +30,8 @@ bool contains(std::span<const std::string_view> words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Returns the vertex of one corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, as an index from 0. A
-// negative v counts backwards from the last vertex.
+// Reads a face corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, and returns its vertex as an index from 0.
+// A negative v counts backwards from the last vertex.
 std::uint32_t corner_vertex(std::string_view token, std::uint64_t vertices, const TextReader& in) {
   const std::string_view text = token.substr(0, token.find('/'));
   if (token.find_first_not_of("0123456789/-+") != std::string_view::npos || text.empty() ||
@@ -66,8 +66,8 @@ void refuse_other_format(std::string_view bytes, const std::string& name) {
                 "rename it by its format, or get it again");
 }
 
-// Throws Error if lines end with LF, but a CR is inside a line. The CR would count as a blank. The
-// text after the CR would then be read as part of a comment or a vertex line, and be lost.
+// Throws Error if lines end with LF, but a line has a CR inside. The reader would take this CR for
+// a blank, and could skip the text after the CR as part of a comment or of a vertex line.
 void require_one_end(std::string_view bytes, const std::string& name) {
   if (bytes.find('\n') == std::string_view::npos) return;
   for (std::size_t at = bytes.find('\r'); at != std::string_view::npos;
@@ -162,8 +162,8 @@ bool is_three_dimensional(std::string_view keyword) {
   return keyword == "OFF";
 }
 
-// Reads a number of elements. Throws Error if the remaining bytes are too few for them. An element
-// takes at least `bytes_each` bytes of text; the last element may lack its newline.
+// Reads a number of elements. Throws Error if the remaining bytes are too few for this number. An
+// element takes at least `bytes_each` bytes of text; the last element may lack its newline.
 std::uint64_t count(TextReader& in, std::string_view what, std::uint64_t bytes_each) {
   const std::int64_t value = in.integer(fmt::format("the number of {}", what));
   if (value < 0) in.fail(fmt::format("the number of {} is {}", what, value), kDamaged);
@@ -229,7 +229,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name) {
     const std::int64_t size = in.integer("the number of vertices of a face");
     if (size < 0) in.fail(fmt::format("a face of {} vertices", size), "correct the face");
     corners.clear();
-    // Reads the corners one by one. If `size` is too large, reading fails at the end of the line.
+    // If `size` is too large, reading fails at the end of the line, before `corners` grows large.
     for (std::int64_t k = 0; k < size; ++k) {
       const std::int64_t index = in.integer("a vertex index of the face");
       if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices) {
@@ -285,7 +285,7 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// True if one of the first 4096 bytes is NUL. Binary STL has NULs in its headers; text has none.
+// True if one of the first 4096 bytes is NUL. Binary STL usually has NULs there; text has none.
 bool has_nul(std::string_view bytes) { return bytes.substr(0, 4096).find('\0') != bytes.npos; }
 
 bool is_text(std::string_view bytes) {
@@ -334,7 +334,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
   return mesh.finish();
 }
 
-// Reads the next words, perhaps from several lines. Throws Error if they differ from `words`.
+// Reads the next words, even over several lines. Throws Error if these words are not `words`.
 void expect(TextReader& in, std::string_view words) {
   const std::string remedy = "see whether the file is an STL file and whole";
   for (std::size_t start = 0; start < words.size();) {
@@ -347,8 +347,8 @@ void expect(TextReader& in, std::string_view words) {
   }
 }
 
-// Reads the rest of the line. Stops before a word `stop` if one of the next few words is `after`,
-// since a file may have only one line.
+// Reads and returns the rest of the line. A file may have only one line. So the function stops at
+// the word `stop` if the word `after` follows within a few words.
 std::string rest_before(TextReader& in, std::string_view stop, std::string_view after) {
   std::string out;
   for (;;) {

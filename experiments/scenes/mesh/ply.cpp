@@ -23,7 +23,7 @@ struct TypeInfo {
   std::size_t size;  // bytes
   bool is_signed_integer;
 };
-// In the order of the enumerators of Type.
+// Types in the order of the enumerators of Type.
 constexpr std::array<TypeInfo, 8> kTypes = {{{"char", "int8", 1, true},
                                              {"uchar", "uint8", 1, false},
                                              {"short", "int16", 2, true},
@@ -125,8 +125,8 @@ Header read_header(TextReader& in) {
   }
 }
 
-// AsciiBody and BinaryBody read the values of a file's body, and have the same functions. An ASCII
-// body has one element per line.
+// AsciiBody and BinaryBody read the values after the header. Both have the same member functions.
+// An ASCII body has one element per line.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextReader& in) : in_(in) {}
@@ -142,7 +142,7 @@ class AsciiBody {
   void skip(Type) {
     if (in_.token().empty()) in_.fail("fewer values than the header declares", kDamaged);
   }
-  // The fewest bytes that a value takes: a digit and a separator.
+  // Returns the least number of bytes of a value: a digit and a separator.
   static std::size_t least_bytes(Type) { return 2; }
   // Counts one byte more, since the last value of the file may lack its separator.
   std::size_t bytes_left() const { return in_.bytes_left() + 1; }
@@ -244,7 +244,7 @@ bool is_index_list(const Property& property) {
   return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-// Stores the faces until the vertices are known, since faces may come first in the file.
+// Stores the faces until all vertices are read, since faces may come first in the file.
 struct Faces {
   std::vector<std::uint32_t> corners;  // corners of all faces, one face after the other
   std::vector<std::uint32_t> sizes;
@@ -334,8 +334,8 @@ Mesh read_body(Body body, const Header& header, const std::string& name) {
   Faces faces;
   bool has_faces = false;
   for (const Element& element : header.elements) {
-    if (element.properties.empty()) continue;  // such elements take no bytes
-    std::size_t least = 0;                     // the fewest bytes of an element
+    if (element.properties.empty()) continue;  // the elements take no bytes
+    std::size_t least = 0;                     // least number of bytes of an element
     for (const Property& p : element.properties)
       least += body.least_bytes(p.count.value_or(p.type));
     if (element.count > body.bytes_left() / std::max<std::size_t>(least, 1)) {

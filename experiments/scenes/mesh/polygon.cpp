@@ -11,7 +11,7 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kMaxEarCorners = 8192;
-constexpr double kUnit = 0x1p-53;  // relative rounding error of one operation
+constexpr double kUnit = 0x1p-53;  // largest relative rounding error of an operation
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 
 // Adds products of finite doubles exactly, in fixed point. The lowest bit is 2^-2148, the square of
@@ -37,8 +37,8 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
-  // Returns the index and the value of the highest nonzero word of the absolute value. plane_of()
-  // compares the absolute values of sums by these two numbers.
+  // Returns the index and the value of the highest nonzero word of the sum's absolute value. The
+  // order of these pairs is the order of the absolute values, except for sums with equal pairs.
   std::pair<std::size_t, std::uint64_t> magnitude() const {
     const int which = sign() < 0 ? 1 : 0;
     const Words &greater = sums_[which], &less = sums_[1 - which];
@@ -55,7 +55,7 @@ class ExactSum {
  private:
   using Words = std::array<std::uint64_t, 68>;  // least significant first
 
-  // A double as +-(high 2^32 + low) 2^(shift - 1074).
+  // Represents a double as +-(high 2^32 + low) 2^(shift - 1074).
   struct Parts {
     explicit Parts(double x) {
       const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -83,7 +83,7 @@ class ExactSum {
     }
   }
 
-  std::array<Words, 2> sums_{};  // sums of the positive terms and of the absolute negative terms
+  std::array<Words, 2> sums_{};  // [0]: sum of positive terms; [1]: sum of |negative terms|
 };
 
 // A plane of two coordinates, u and v, in which the polygon is counterclockwise.
@@ -103,9 +103,9 @@ ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   return area;
 }
 
-// Returns a plane perpendicular to a coordinate axis. On this axis, the polygon's normal has its
-// largest component in absolute value, or one at least half as large. The normal is computed in
-// double. If its largest component m does not exceed `bound` in size, exact areas decide.
+// Returns a plane perpendicular to a coordinate axis. In absolute value, the component of the
+// polygon's normal on this axis is at least half of the largest component. The normal is computed
+// in double. If its largest component m has |m| <= bound, exact areas decide.
 //
 // With n corners, each component is a sum of at most 2 n products of two differences. A product is
 // rounded three times, and then takes part in at most 2 n additions. So each product adds an error
@@ -176,8 +176,8 @@ struct Ring {
   bool same(const Vec3& a, const Vec3& b) const { return a[u] == b[u] && a[v] == b[v]; }
 
   // True if corner i is convex, and the triangle of i and its two neighbours holds no reflex
-  // corner. (Convex corners need no test.) A corner at the position of one of the triangle's
-  // corners does not count, since it belongs to a seam that joins a hole to the outline.
+  // corner. (Convex corners need no test.) A reflex corner at the position of one of the triangle's
+  // corners is ignored, since such a corner ends a seam that joins a hole to the outline.
   bool is_ear(std::uint32_t i, std::uint64_t& steps) const {
     if (turn_at(i) <= 0) return false;
     const Vec3& a = at[previous[i]];
@@ -199,8 +199,8 @@ struct Ring {
     classify(next[i]);
   }
 
-  // True if the polygon winds around once. Precondition: it has no right turns. The corners of a
-  // polygon that winds once rise in lexicographic order to one highest corner, and then fall.
+  // True if the polygon winds around once. Precondition: the polygon makes no right turns. If a
+  // polygon winds once, its corners rise lexicographically to one highest corner, and then fall.
   bool goes_round_once() const {
     const auto below = [&](const Vec3& a, const Vec3& b) {
       return a[u] < b[u] || (a[u] == b[u] && a[v] < b[v]);
@@ -220,8 +220,8 @@ struct Ring {
     return falls + (before == 1 && first == -1) <= 1;
   }
 
-  // True if the interiors of two triangles meet. They do not meet if the line through an edge of
-  // one triangle has the other triangle on its outer side. Precondition: both are counterclockwise.
+  // True if the interiors of two triangles meet. Disjoint interiors are separated by the line
+  // through an edge of one of the triangles. Precondition: both triangles are counterclockwise.
   bool overlap(const Triangle& s, const Triangle& t) const {
     for (const auto& [x, y] : {std::pair(&s, &t), std::pair(&t, &s)}) {
       for (std::size_t k = 0; k < 3; ++k) {

@@ -57,9 +57,9 @@ void transform(const std::array<Vec3, 3>& rows, std::vector<Vec3>& points) {
   }
 }
 
-// Finds the parts of a mesh that are connected through shared vertices, and numbers them in the
-// order of their first triangles. `part` receives the part of each triangle. Returns the number of
-// parts.
+// Finds the parts of a mesh that are connected through shared vertices, and numbers these parts in
+// the order of their first triangles. `part` receives the number of the part of each triangle.
+// Returns how many parts there are.
 std::uint32_t connected_parts(const Mesh& mesh, std::vector<std::uint32_t>& part) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -93,7 +93,7 @@ struct Edge {
   double squared = 0;  // square of the length
   std::uint32_t a = 0, b = 0;
 
-  // True if this edge is divided after the other one.
+  // True if refined() divides this edge later than the other edge.
   bool operator<(const Edge& other) const {
     if (squared != other.squared) return squared < other.squared;
     return a != other.a ? a > other.a : b > other.b;
@@ -183,7 +183,7 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
     part.assign(mesh.triangles.size(), 0);
   }
 
-  // Counting sort of the triangles by part, stable within each part.
+  // Sorts the triangles by part, with a stable counting sort.
   std::vector<std::uint32_t> size(parts, 0);
   for (const std::uint32_t p : part) ++size[p];
   const auto used = std::count_if(size.begin(), size.end(), [](std::uint32_t n) { return n > 0; });

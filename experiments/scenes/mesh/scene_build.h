@@ -20,7 +20,7 @@ struct Placement {
   struct Rotation {
     Vec3 axis = Vec3::UnitZ();  // any length but 0; finite
     double angle = 0;           // radians, counterclockwise seen from the tip of the axis
-    // x, y, z, w; any length but 0. If set, it replaces axis and angle.
+    // x, y, z, w; any length but 0. If set, the quaternion replaces axis and angle.
     std::optional<std::array<double, 4>> quaternion = {};
   };
   // The upper three rows of a 4 x 4 matrix. If set, the other members are empty.
@@ -30,7 +30,7 @@ struct Placement {
   std::optional<Vec3> translate;
 };
 
-/// Applies the placement to every point. Precondition: its numbers are finite, and its axis not 0.
+/// Applies the placement to every point. Precondition: finite numbers, and an axis that is not 0.
 std::vector<Vec3> place(std::vector<Vec3> points, const Placement& placement);
 
 enum class Split {
@@ -43,7 +43,7 @@ enum class Split {
 /// A scene under construction.
 class SceneBuilder {
  public:
-  /// Errors name `where`: the scene file, or the name of the scene.
+  /// where: named in errors; the scene file, or the name of the scene.
   SceneBuilder(std::string scene_name, std::string where);
 
   /// Appends a mesh as one object or several. Within an object, triangles keep the order of the
@@ -101,9 +101,9 @@ Box bounds(const Triangles& of) {
   }
   return box;
 }
-/// The middle of a box that is not empty.
+/// Returns the middle of a box that is not empty.
 Vec3 centre(const Box& box);
-/// The length of the diagonal of a box that is not empty.
+/// Returns the length of the diagonal of a box that is not empty.
 double diagonal(const Box& box);
 
 /// Refines a mesh until it has `triangles` triangles or a few more. Each step divides the longest
@@ -116,7 +116,7 @@ Mesh refined(Mesh mesh, std::uint64_t triangles);
 
 namespace shapes {
 
-constexpr double kTurn = 2 * std::numbers::pi;  // radians
+constexpr double kTurn = 2 * std::numbers::pi;  // a full turn, in radians
 
 class Random : public RandomNumbers {
  public:
@@ -146,7 +146,7 @@ class Random : public RandomNumbers {
     const auto octave = static_cast<int>(below(octaves));
     return std::ldexp(between(0.5, 1), -octave);
   }
-  /// A random rotation, then a translation by `at`.
+  /// Returns a random rotation, followed by a translation by `at`.
   Placement anywhere(const Vec3& at) {
     const Vec3 axis = direction();
     return {.scale = {}, .rotate = Placement::Rotation{axis, between(-3, 3)}, .translate = at};
@@ -158,7 +158,7 @@ using Corners = std::array<Vec3, 3>;
 /// Returns a mesh in one group, in which each triangle is a face.
 Mesh finished(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
-/// A surface of columns * rows cells of two triangles each. Vertex (i, j) is at place(i, j).
+/// Returns a surface of columns * rows cells, each of two triangles. Vertex (i, j) is place(i, j).
 /// closed: the last column is joined to the first column, and the last row to the first row. A
 /// surface that is not closed has (columns + 1) * (rows + 1) vertices.
 template <class Place>
@@ -179,27 +179,27 @@ Mesh surface(std::uint32_t columns, std::uint32_t rows, bool closed, const Place
   return finished(std::move(vertices), std::move(triangles));
 }
 
-/// Triangles that share no vertices.
+/// Returns a mesh of triangles that share no vertices.
 Mesh soup(const std::vector<Corners>& list);
 
-/// The unit sphere as an icosahedron whose triangles are each divided into 4^level triangles.
+/// Returns the unit sphere: an icosahedron, with each triangle divided into 4^level triangles.
 /// Coordinates need only arithmetic and square roots, so the mesh is the same on every platform.
 Mesh sphere(int level);
 
-/// A unit square of `cells` by `cells` cells, each of two triangles. Vertex i * (cells + 1) + j is
-/// at (i/cells, j/cells, 0), with i and j from 0 to `cells`.
+/// Returns a unit square of cells^2 cells, each of two triangles. Vertex i * (cells + 1) + j is at
+/// (i/cells, j/cells, 0), with i and j from 0 to `cells`.
 Mesh grid(std::uint32_t cells);
 
 /// Returns the corners of a square parallel to the x-y plane, counterclockwise seen from above. The
 /// square's triangles are (0, 1, 2) and (0, 2, 3).
 std::array<Vec3, 4> square(const Vec3& centre, double side);
 
-/// A torus about the z axis with radii `ring` and `tube`. It has `around` steps along the ring and
-/// `across` steps around the tube, and so 2 * around * across triangles. Precondition: at least 3
-/// steps each way. Vertex i * across + j is at step i along the ring and step j around the tube.
+/// Returns a torus about the z axis with radii `ring` and `tube`. The ring has `around` steps, the
+/// tube has `across` steps, and the torus has 2 * around * across triangles. Vertex i * across + j
+/// is at step i of the ring and step j of the tube. Precondition: around and across are at least 3.
 Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across);
 
-/// A sphere with bumps and dents of up to about a third of its radius.
+/// Returns a unit sphere with a smooth bump at four random directions, and dents opposite to them.
 Mesh blob(int level, Random& random);
 
 Corners shifted(Corners corners, const Vec3& by);
@@ -207,7 +207,7 @@ Corners shifted(Corners corners, const Vec3& by);
 /// Returns a vector of length `length`, perpendicular to `along`, in a random direction.
 Vec3 across(const Vec3& along, double length, Random& random);
 
-/// A random point inside the triangle. Its barycentric coordinates are 0.2 or more.
+/// Returns a random point of the triangle, whose barycentric coordinates are 0.2 or more.
 Vec3 inner_point(const Corners& corners, Random& random);
 
 }  // namespace shapes

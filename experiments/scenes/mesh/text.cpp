@@ -48,8 +48,8 @@ std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   return length;
 }
 
-// True if a decimal number is too small for a double, false if it is too large. Precondition: it is
-// outside of 5e-324 to 2e308, the range of doubles. So the sign of its exponent decides.
+// True if a decimal number is too small for a double, false if the number is too large.
+// Precondition: one of the two is true. So the sign of the number's decimal exponent decides.
 bool underflows(std::string_view digits) {
   constexpr long kFar = 1'000'000'000;
   long exponent = 0;
@@ -129,7 +129,7 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
     throw Error(path, "the file does not exist", remedy);
   if (error) throw Error(path, "cannot be opened: " + error.message(), remedy);
   if (std::filesystem::is_directory(status)) throw Error(path, "is a directory", remedy);
-  // Refuses pipes and devices, since they may never end.
+  // Refuses pipes and devices, since reading a pipe may never end.
   if (!std::filesystem::is_regular_file(status))
     throw Error(path, "is not a regular file", "copy its contents to a file and name that");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
@@ -188,7 +188,7 @@ std::string clean_name(std::string_view bytes) {
 }
 
 Number parse_number(std::string_view token, double& value) {
-  // from_chars does not accept '+'. "+-1" is malformed.
+  // std::from_chars does not accept '+', so a '+' is removed first. "+-1" is malformed.
   if (token.starts_with('+')) {
     token.remove_prefix(1);
     if (token.starts_with('-')) return Number::kMalformed;
@@ -234,7 +234,7 @@ void TextReader::skip_blanks() {
 }
 
 bool TextReader::next_line() {
-  // Skips the remaining tokens, since a line with a continuation includes the next lines.
+  // Skips the remaining tokens of this line, which may continue on the next lines of the text.
   if (started_ && rules_.continuation) {
     while (!token().empty()) {
     }
@@ -333,7 +333,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
   std::string_view rest = bytes;
   while (is_gzip(rest)) {
     for (int code = Z_OK; code != Z_STREAM_END;) {
-      // zlib takes lengths of 32 bits, so it gets at most 1 GiB at once.
+      // zlib takes lengths of 32 bits, so each call gets at most 1 GiB.
       const std::string_view input = rest.substr(0, std::size_t{1} << 30);
       stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
       stream.avail_in = static_cast<uInt>(input.size());
@@ -345,7 +345,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
       rest.remove_prefix(input.size() - stream.avail_in);
       check_size(text.size() + made, bytes.size(), name, limits);
       text.append(piece.data(), made);
-      // All input has been read, but the gzip member has not ended.
+      // zlib has used all input, but the gzip member has not ended.
       if (code == Z_BUF_ERROR) {
         throw Error(
             name,

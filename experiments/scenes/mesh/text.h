@@ -1,5 +1,5 @@
-// Functions for all readers of meshes and scenes. They read a file into a buffer, decompress gzip
-// (RFC 1952), split text into tokens with line numbers, and round each number once, to double.
+// Functions for all readers of meshes and scenes: reading a file into memory, decompressing gzip
+// (RFC 1952), splitting text into tokens with line numbers, and rounding each number to double.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ std::string clean_name(std::string_view bytes);
 enum class Number { kOk, kMalformed, kNotFinite };
 
 /// Reads a whole token as a decimal number, correctly rounded; a leading '+' is accepted. A number
-/// that underflows becomes the nearest double (0 included). Returns kNotFinite for NaN, infinity
-/// and overflow. Sets `value` only if it returns kOk.
+/// that underflows becomes the nearest double, perhaps 0. Returns kNotFinite for NaN, infinity
+/// and overflow. Sets `value` only if the result is kOk.
 Number parse_number(std::string_view token, double& value);
 
 /// A cursor over the lines and tokens of a text. The text and the name must outlive the reader.
@@ -40,7 +40,7 @@ class TextReader {
  public:
   struct Rules {
     char comment = '\0';        // begins a comment where a token may begin; '\0': no comments
-    bool continuation = false;  // a backslash before the end of a line joins the next line to it
+    bool continuation = false;  // a backslash at the end of a line joins it with the next line
   };
 
   TextReader(std::string_view text, std::string_view name, Rules rules);
@@ -49,7 +49,7 @@ class TextReader {
   bool next_line();
   /// Moves to the next token, on this line or a later line. Returns false at the end of the text.
   bool seek();
-  /// Returns the next token of the current line, or an empty one at the end of the line.
+  /// Returns the next token of the current line, or an empty token at the end of the line.
   std::string_view token();
   /// Returns the remaining tokens of the line, joined by single spaces.
   std::string rest();
@@ -61,9 +61,9 @@ class TextReader {
   /// Reads three coordinates with coordinate().
   Vec3 point();
 
-  /// The line of the token that was read last, from 1.
+  /// Returns the line of the token that was read last, from 1.
   long line() const { return line_; }
-  /// Offset of the first byte that is not read yet.
+  /// Returns the offset of the first byte that is not read yet.
   std::size_t offset() const { return at_; }
   std::size_t bytes_left() const { return text_.size() - at_; }
   /// Throws Error naming the current line.
@@ -82,12 +82,12 @@ class TextReader {
   char end_ = '\n';  // the character that ends a line
 };
 
-/// True if the bytes begin like gzip data that use the method "deflate".
+/// True if the bytes begin with the header of gzip data that use the method "deflate".
 bool is_gzip(std::string_view bytes);
 
 /// Limits for the decompressed contents, since a small gzip file can fill the memory. Contents of
-/// more than `free_bytes` are refused if they are more than `most_ratio` times as large as the
-/// file.
+/// more than `free_bytes` are refused if they are at least `most_ratio` times as large as the
+/// compressed data.
 struct GzipLimits {
   std::uint64_t max_bytes = std::uint64_t{4} << 30;
   std::uint64_t free_bytes = std::uint64_t{256} << 20;

@@ -18,8 +18,8 @@ class NearPoints {
   explicit NearPoints(double tolerance) : tolerance_(tolerance) {}
 
   // Returns the number of the nearest stored point whose distance, in double, is at most the
-  // tolerance. If several are equally near, returns the lowest number. If there is none, stores p
-  // with the number `own` and returns `own`.
+  // tolerance. If several points are equally near, returns the lowest number. If no stored point is
+  // this near, stores p with the number `own` and returns `own`.
   std::uint32_t number(const Vec3& p, std::uint32_t own);
 
  private:
@@ -60,8 +60,8 @@ NearPoints::Cell NearPoints::cell_of(const Vec3& p) const {
   Cell out;
   for (std::size_t k = 0; k < 3; ++k) {
     const double x = p[static_cast<int>(k)] + 0.0;  // turns -0.0 into 0.0
-    // If the tolerance is 0, each position is a cell. Cell numbers above 2^53 are rounded, so cells
-    // may share a number. But different positions are then at least a cell apart.
+    // If the tolerance is 0, each position is a cell. Cell numbers above 2^53 are not exact. But
+    // coordinates of this size differ by 0 or by more than the tolerance, so no near point is lost.
     out[k] = tolerance_ > 0 ? std::floor(x / tolerance_ / 2) + 0.0 : x;
     if (!std::isfinite(out[k])) out[k] = x;
   }

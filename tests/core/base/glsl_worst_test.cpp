@@ -10,9 +10,7 @@
 namespace farcull {
 namespace {
 
-using glsl_worst::Worst;
-using rational::Q;
-using rational::Random;
+using glsl_worst::Worst, rational::Q, rational::Random;
 
 constexpr int kModes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 constexpr float kSmallest = 0x1p-126f;

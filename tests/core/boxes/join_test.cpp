@@ -9,8 +9,7 @@
 namespace farcull {
 namespace {
 
-using lab::Indices, lab::overlapping, lab::Pairs;
-using rational::Random;
+using lab::Indices, lab::overlapping, lab::Pairs, rational::Random;
 
 Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, const Indices& items) {
   std::vector<bool> taken(boxes.size());

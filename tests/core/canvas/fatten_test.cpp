@@ -9,8 +9,7 @@
 namespace farcull {
 namespace {
 
-using rational::Q;
-using rational::Random;
+using rational::Q, rational::Random;
 using Points = std::vector<Vec3>;
 
 Window window_of(Random& random) {

@@ -13,8 +13,7 @@
 namespace farcull {
 namespace {
 
-using rational::Random;
-using reference::Triangle;
+using rational::Random, reference::Triangle;
 using Objects = std::vector<std::vector<Triangle>>;
 using Indices = std::vector<std::uint32_t>;
 

@@ -9,8 +9,7 @@
 namespace farcull {
 namespace {
 
-using rational::Q;
-using rational::Random;
+using rational::Q, rational::Random;
 
 using Triangle = std::array<Vec3, 3>;
 

@@ -13,8 +13,7 @@ namespace {
 
 using near_lab::GridScene;
 using Fraction = near_lab::Fraction<near_lab::Integer>;
-using near_lab::Truth;
-using rational::Random;
+using near_lab::Truth, rational::Random;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 

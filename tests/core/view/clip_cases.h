@@ -5,10 +5,7 @@
 
 namespace farcull::clip_cases {
 
-using rational::between;
-using rational::Q;
-using rational::Q3;
-using rational::Random;
+using rational::between, rational::Q, rational::Q3, rational::Random;
 
 using Triangle = std::array<Vec3, 3>;
 

@@ -11,9 +11,7 @@ namespace farcull {
 namespace {
 
 using namespace clip_cases;
-using rational::dot;
-using rational::exact;
-using rational::minus;
+using rational::dot, rational::exact, rational::minus;
 
 struct Corner {
   Vec3 p;

@@ -9,9 +9,7 @@ namespace farcull {
 namespace {
 
 using namespace clip_cases;
-using rational::Q;
-using rational::Q3;
-using rational::Random;
+using rational::Q, rational::Q3, rational::Random;
 
 TEST(Clip, HugeIsUndrawableAndNeverSilentlyOutside) {
   const std::vector<Box> region{{Vec3(-1, -1, -1), Vec3(1, 1, 1)}};

@@ -11,9 +11,7 @@
 namespace farcull {
 namespace {
 
-using rational::Q;
-using rational::Q3;
-using rational::Random;
+using rational::Q, rational::Q3, rational::Random;
 
 TEST(View, RefusesWhatIsNoDirection) {
   for (const char* text :
@@ -249,8 +247,7 @@ TEST(FitWindow, AtTheEndOfTheDoublesIsEmptyOrContains) {
 
 // ----
 
-using lab::meet;
-using reference::Triangle;
+using lab::meet, reference::Triangle;
 
 Box box_of(const std::vector<Triangle>& triangles) {
   Box box = Box::empty();

@@ -7,8 +7,7 @@
 namespace farcull {
 namespace {
 
-using lab::neighbours_scene;
-using rational::Q;
+using lab::neighbours_scene, rational::Q;
 
 Q squared(const Q& x) { return x * x; }
 

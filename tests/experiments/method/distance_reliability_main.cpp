@@ -15,8 +15,7 @@
 namespace farcull {
 namespace {
 
-using distance_lab::Q;
-using distance_truth::Nearest;
+using distance_lab::Q, distance_truth::Nearest;
 using enum DistancePairs;
 
 enum class Spoil : std::uint8_t { nothing, bit, pair };

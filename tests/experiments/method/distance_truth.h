@@ -15,9 +15,7 @@
 
 namespace farcull::distance_truth {
 
-using distance_lab::Corners;
-using distance_lab::Q;
-using distance_lab::Z;
+using distance_lab::Corners, distance_lab::Q, distance_lab::Z;
 using Squared = near_lab::Fraction<Z>;  // of a distance, times the square of the scale
 using Cell = std::int64_t;
 using near_lab::Integer;

@@ -9,10 +9,8 @@
 namespace farcull {
 namespace {
 
-using distance_lab::Answer;
-using distance_lab::answers_of;
-using distance_lab::moved_apart;
-using distance_lab::Truth;
+using distance_lab::Answer, distance_lab::answers_of, distance_lab::moved_apart,
+    distance_lab::Truth;
 using enum DistancePairs;
 
 std::vector<DistanceOptions> questions(rational::Draws& random, double unit) {

@@ -8,8 +8,7 @@
 namespace farcull {
 namespace {
 
-using reference::text;
-using reference::Triangle;
+using reference::text, reference::Triangle;
 
 double below(double x) { return std::nextafter(x, 0); }
 double above(double x) { return std::nextafter(x, HUGE_VAL); }

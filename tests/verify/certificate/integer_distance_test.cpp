@@ -10,9 +10,7 @@
 namespace farcull {
 namespace {
 
-using near_lab::squared_distance_of;
-using reference::Rational;
-using reference::Triangle;
+using near_lab::squared_distance_of, reference::Rational, reference::Triangle;
 
 Rational value(const Fraction& x) {
   Rational out(x.over, x.under);

@@ -10,8 +10,7 @@
 namespace farcull {
 namespace {
 
-using reference::text;
-using reference::Triangle;
+using reference::text, reference::Triangle;
 
 /// True where the direction of docs/certificate.md separates, written from that page alone.
 bool page_separates(const Triangle& s, const Triangle& t, int direction) {

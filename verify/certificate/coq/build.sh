@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the proved checker, but only if its proof holds. Coq checks Proofs.v and prints the axioms of its theorems; there must be
-# none. Then Coq translates Checker.v into OCaml, which is compiled together with the reader of certificates.
+# Builds the proved checker, but only if its proof holds. Coq checks Proofs.v and prints the axioms that the theorems use;
+# no axiom is allowed. Then Coq translates Checker.v into OCaml, which is compiled together with the reader of certificates.
 #   build.sh FOLDER     makes FOLDER/farcull-check-verified; needs coqc, ocamlfind and zarith. FOLDER/Proofs.log has the theorems.
 #                       Does nothing if FOLDER has a program made from the same files.
 set -eu
@@ -28,6 +28,6 @@ if [ "$(grep -cx 'Closed under the global context' Proofs.log)" != "$(grep -c '^
   exit 1
 fi
 coqc -q Extract.v
-# -w -a: no warnings, since Coq generates most of the code.
+# -w -a disables warnings, since Coq generates most of the code.
 ocamlfind ocamlopt -package zarith -linkpkg -inline 100 -w -a checker.mli checker.ml json.ml main.ml -o farcull-check-verified.new
 mv farcull-check-verified.new farcull-check-verified
