@@ -175,10 +175,11 @@ def main():
     results = measure(program, scenes or SCENES)
     draw(results, picture)
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    cpu = pathlib.Path("/proc/cpuinfo").read_text("utf-8").partition("model name")[2].partition(": ")[2].partition("\n")[0]
     lines = [
         "# What each stage of FAR takes away and costs", "",
         "Made again by `bash experiments/results.sh stages`, which writes this page.", "",
-        f"- **Device:** {os.cpu_count()} cores, no GPU; the native canvas at {SIDE} px, offset `obb` and what follows it.",
+        f"- **Device:** {os.cpu_count()} cores ({cpu}), no GPU; the native canvas at {SIDE} px, offset `obb` and what follows it.",
         f"- **Commit:** {version}, {datetime.date.today()}.",
         f"- **Load:** {os.getloadavg()[0]:.1f} at the end; medians of {ROUNDS} runs in turn, each in a process of its own.", "",
         slower(results), "",
