@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/boxes/oriented.h"
 
@@ -279,6 +280,8 @@ std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
 
 std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const std::uint32_t> items,
                                         unsigned threads) {
+  if (items.size() > UINT32_MAX / 3)  // each gets three vertices below
+    throw Error(scene.name, "1.4e9 triangles or more are left to join", "split it into scenes");
   Scene some;  // has these triangles alone, in the same objects
   some.vertices.resize(3 * items.size());
   some.triangles.resize(items.size());

@@ -94,6 +94,7 @@ std::optional<std::vector<TrianglePair>> pairs_of_boxes(const Scene& scene,
                                                         std::span<const ObjectPair> ignored,
                                                         bool neighbours, unsigned threads);
 /// Returns the pairs of these triangles (ascending) whose boxes overlap, as OrderedPairs does.
+/// Throws Error if there are more than 2^32 / 3 triangles.
 std::vector<TrianglePair> pairs_of_some(const Scene& scene, std::span<const std::uint32_t> items,
                                         unsigned threads);
 
