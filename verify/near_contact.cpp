@@ -114,8 +114,8 @@ void offer_passing(const Corners& x, const Corners& y, int side, Passing& best) 
   }
 }
 
-/// Returns the contact of triangles that cross: a point of an edge in the other triangle. Empty if
-/// this point is not certainly within 64 u R of the other triangle.
+/// Returns the contact of triangles that cross: the point where an edge of one meets the other.
+/// Empty if that point is not certainly near enough to the other triangle.
 std::optional<NearContact> crossing_contact(const Corners& a, const Corners& b) {
   const Corners s = filters::relative_to(a[0], a), t = filters::relative_to(a[0], b);
   Passing best;

@@ -11,7 +11,7 @@ namespace farcull {
 class Error : public std::runtime_error {
  public:
   /// line: line number in a text file, counted from 1; 0: none. The texts may name a parameter as
-  /// "{depth_format}" and a command as "{doctor}". The constructor calls spelled() on each text.
+  /// "{depth_format}" and a command as "{doctor}". The program replaces them by its own names.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;   // a parameter ("vertices"), a file, an object, or a step on a device

@@ -127,8 +127,8 @@ HWY_INLINE bool take_fragments(const NativeJob& job, Verb verb, Bool covered, La
   return false;
 }
 
-/// Draws the quad kEverywhere at depth 0, the nearest, in the job's rows. Returns true if this is a
-/// visibility test (Verb::ask in NativeOutput::run) and a fragment is seen.
+/// Draws the quad kEverywhere at depth 0, the nearest, in the job's rows. Returns true if Verb::ask
+/// (in NativeOutput::run) finds a stored depth before the quad, or at it if touching counts.
 inline bool take_everywhere(const NativeJob& job, Verb verb) {
   bool seen = false;
   for (int y = job.y0; y < job.y1; ++y) {

@@ -37,7 +37,7 @@ struct Comparison {
 /// a clearance. self: only methods that can test an object against itself.
 std::string usual_methods(bool clearance, bool self);
 
-/// Throws Error naming the option for bad arguments, before a scene is read.
+/// Throws Error if an argument is bad. The error names the option. Needs no scene.
 void validate(const CompareArguments& arguments);
 
 /// Runs all methods, each `repeat` times. A method that draws runs at every resolution, and far

@@ -208,7 +208,7 @@ Image image_of(const Window& window, const std::array<Vec3, 3>& corners, double 
 // place (find_places()).
 struct Part {
   std::uint32_t of = 0, by = 0;
-  double share = 0;  // area of the part / area of the image in the place
+  double share = 0;  // area of the part / area of the image of `of` in its place
   Range x, y;
   double place = 0;  // area of the image in the place; 0 except in the place's first part
   double strip = 0, width = 0, height = 0;  // region where each hides the other: area, sides
@@ -538,7 +538,7 @@ std::string misses_line(const MissesOfPlan& misses) {
   const auto whole = [](double x) { return std::to_string(std::llround(x)); };
   return kName + whole(of.missed) + " of " + std::to_string(of.colliding) +
          " colliding pairs expected, " + whole(of.low()) + " to " + whole(of.high()) +
-         (of.judged() ? "\n" : "; the range is reliable only up to 40 % misses\n");
+         (of.judged() ? "\n" : "; the range is not reliable above 40 %\n");
 }
 
 std::optional<MissPrediction> predict_misses(const Scene& scene, const DrawPlan& work,

@@ -141,8 +141,8 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-/// Returns the folder of the point's suite: point.suite, or if that is empty, the folder in the
-/// environment variable FARCULL_MADE_SUITE. Makes the suite in that folder unless it exists.
+/// Returns point.suite, or if that is empty, the folder that the environment variable
+/// FARCULL_MADE_SUITE names. Makes a suite in the variable's folder if the folder has none.
 std::string folder_of(const LibraryPoint& point) {
   if (!point.suite.empty()) return point.suite;
   const char* const named = std::getenv("FARCULL_MADE_SUITE");

@@ -23,7 +23,7 @@ std::string pair_list_header(bool self);
 struct ListNumbers {
   std::vector<std::uint64_t> objects;    // per object: number in the whole scene, ascending
   std::vector<std::uint32_t> triangles;  // per triangle: number within the whole object
-  bool self = false;                     // true if an object of the whole scene is `self`
+  bool self = false;                     // an object of the whole scene is tested against itself
 };
 
 /// Writes the rows of a list. Numbers are decimal and 0-based. Triangles are numbered within their

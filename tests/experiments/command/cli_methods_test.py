@@ -46,7 +46,7 @@ bad an unknown study | nope: .*lemma | experiment nope
   | @form.json "clear": "all" | @form.json "level": "triangles" | @form.json "conservative": true
 0 plan of a form | plan crowd --method quick-cullide --rounds 1 --level objects | ^further rounds +left out +--rounds 1
 0 plan with misses | plan crowd:60 --method cullide --resolution 256 | ^misses +[67][0-9] of 272 colliding pairs expected, [0-9]+ to [0-9]+$
-0 plan of many misses | plan crowd:60 --method cullide --resolution 128 | ^misses +1[67][0-9] of 272 .*; the range is reliable only up to 40 % misses$
+0 plan of many misses | plan crowd:60 --method cullide --resolution 128 | ^misses +1[67][0-9] of 272 .*; the range is not reliable above 40 %$
 0 plan without | plan crowd:60 --method cullide --conservative | ^misses +not predicted: conservative rasterization
 0 misses as JSON | plan crowd:60 --method cullide --json - | "misses": \{
 0 compare forms | compare two-spheres --methods far,cullide,exact --resolutions 64 --rounds 1 --level objects
