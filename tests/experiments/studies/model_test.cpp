@@ -156,7 +156,9 @@ TEST(MissModel, PartsFarApartOnABarHoldCentresEachByItself) {
   EXPECT_GT(factor_between(twin, missed), 1.5);
 }
 
-// One triangle and twenty others that all cross it in a point. If it is culled, all are missed.
+// One triangle and twenty others that all cross it in a point. If it is culled, all are missed. The
+// variance of independent pairs is at most missed * (1 - missed / 20), and 20 times this if all are
+// missed together.
 TEST(MissModel, PairsOfOneTriangleAreMissedTogether) {
   shapes::Random random(3);
   Scene scene{.name = "star"};
